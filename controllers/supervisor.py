@@ -31,6 +31,10 @@ ALONE = "characters come singly; a crowd that only walks is stepped by the locom
 ELSE = "this state is not of several controllers: enter it first"
 
 
+GLIDES = 0.05
+"""And once he rests who still went faster than this [m/s]."""
+
+
 RISES, RESTS = 0.2, 0.1
 """Whose hips come up faster than the first [m/s], as he goes no faster than the second [m/s], still stands up, as from a landing."""
 
@@ -65,6 +69,8 @@ class Asked:
                 return False
         far = state.ground - before.ground
         pace = float(np.hypot(before.velocity[0], before.velocity[2]))
+        if pace > GLIDES > float(np.hypot(state.velocity[0], state.velocity[2])):
+            return False
         return bool(np.array_equal(state.contacts, before.contacts) and np.hypot(far[0], far[1]) < (ALONG if leap.along else MOVED + PASSED * pace)
                     and abs(far[2]) < TURNED and state.floor == before.floor and not (_rises(before) and not _rises(state)))
 

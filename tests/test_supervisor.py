@@ -226,6 +226,16 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     assert len(calls) == 3 and state.refused, "asked anew"
 
 
+def test_who_was_refused_as_he_glided_is_asked_again_once_he_rests():
+    """Where he stepped back from a box, he was refused for his pace, and never asked again."""
+    from gambol.controllers.supervisor import Asked
+    state = Supervisor({"locomotion": Locomotion.load()}).start()
+    slow, still = (replace(state, velocity=np.array([-speed, 0.0, 0.0])) for speed in (0.12, 0.03))
+    asked = Asked("jump", WANTED, slow)
+    assert asked.still(slow, WANTED) and not asked.still(still, WANTED)
+    assert Asked("jump", WANTED, still).still(still, WANTED)
+
+
 @pytest.fixture(scope="module")
 def leaper():
     return Supervisor({"locomotion": Locomotion.load(settings=Settings(idle=0.0)), "jump": Jump()})

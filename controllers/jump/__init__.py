@@ -5,11 +5,12 @@ flight, landing, and take-offs from a run. A jump is planned whole, then played;
 from .body import GRAVITY, Physique, mass_of
 from .controller import Jump, Jumping
 from .crouching import Crouching
-from .reach import BESIDE, MOMENTARY, SETS_FEET, Refused
+from .motion import LIKE
+from .reach import BESIDE, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Refused
 from .starting import FRESH, RUNNING, SLOWLY, goes, start_of, stands, stayed
 from .warm_up import rehearse
 
 __all__ = [
-    "BESIDE", "Crouching", "FRESH", "GRAVITY", "MOMENTARY", "RUNNING", "SETS_FEET", "SLOWLY", "Jump", "Jumping", "Physique", "Refused", "goes", "mass_of", "rehearse", "stands", "start_of",
+    "BESIDE", "Crouching", "FRESH", "GRAVITY", "LIKE", "MOMENTARY", "PACE", "RUNNING", "SETS_FEET", "SLOWLY", "TOO_NEAR", "Jump", "Jumping", "Physique", "Refused", "goes", "mass_of", "rehearse", "stands", "start_of",
     "stayed",
 ]

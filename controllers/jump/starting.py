@@ -13,7 +13,7 @@ from ..body import Pose, Skeleton, centre_of_mass, contact_points, forward_kinem
 from ..contract import CharacterState, Leap, level
 from ..navigation import floor_at, in_world, room, slope_at
 from .body import FLAT, Physique, Start, raised, soles, vectors
-from .motion import PLANT, Plan, carried
+from .motion import LIKE, PLANT, Plan, carried
 from .reach import Onward
 
 RUNNING = 0.95
@@ -29,8 +29,8 @@ FEET = "left", "right", "both"
 HIGH, SINKS = 0.012, 0.2
 """But not while it is higher over the floor than the first [m] and comes down faster than the second [m/s], at standard height: nobody pushes off a foot that is still in
 the air, whatever its contacts say."""
-SLOWLY = 0.25, 1.1
-"""Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as walkers and runners do."""
+SLOWLY = 0.12, LIKE[1]
+"""Who is told to leap along his way, and is slower than the first [m/s], leaps on the spot; who is faster than the second as runners do."""
 CLEAR = 0.015
 """A foot that has just left the floor, and is no higher than this over it [m], at standard height, would come into it as its body goes down."""
 BACK = 0.8

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import FRESH, RUNNING, Jump, Physique, goes
+from gambol.controllers.jump import FRESH, LIKE, RUNNING, Jump, Physique, goes
 from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
 from gambol.controllers.jump.reach import Touch
 from gambol.controllers.navigation import gap
 
-from ..input import Aim, jumping, landing, leaving
+from ..input import AHEAD, Aim, jumping, landing, leaving
 from ..scene import Goal, Prop
 from ..world import Character, jump_of
 
@@ -31,7 +31,7 @@ ALIKE, TURNED = 0.03, 0.1
 """A body that has moved by less [m], and aims as much to the side at a metre, reaches the same places, if it is to land turned by less than the second [rad]."""
 
 CARRIED = 0.75
-"""The ring of who goes slowly lies where he is in so long [s]."""
+"""The ring of who goes slowly lies where he is in so long [s]; of who goes faster, nearer and nearer to where that of a runner lies."""
 BESIDE = 1.2
 """What is farther from a runner's arc [m] is nothing that he would touch."""
 HITS = "would hit"
@@ -183,7 +183,9 @@ def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Pro
     start = _pushing(jump, start)
     stand = jump.middle(start, floor)
     if leap.along:  # he waits for the foot that carries him there
-        place = stand + CARRIED * goes(state)
+        way = goes(state)
+        pace = max(float(np.linalg.norm(way)), 1e-9)
+        place = stand + float(np.interp(pace, LIKE, (CARRIED, AHEAD[0] / pace + AHEAD[1]))) * way
         return Preview(stand, place, *flight(jump.path(start, place, floor)), "", heading=leap.heading)
     place = stand if leap.place is None else np.asarray(leap.place, float)
     way, why = jump.survey(start, place, floor, leap.airtime, solid)

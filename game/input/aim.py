@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Leap
-from gambol.controllers.jump import SETS_FEET, SLOWLY
+from gambol.controllers.jump import PACE, SETS_FEET, SLOWLY, TOO_NEAR
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
 from .on_top import on_top, past_edge
@@ -25,13 +25,16 @@ from .wish import Wish, in_view
 
 MOVING = 0.9
 """Faster than this [m/s] the jump goes on the way one goes."""
-GOES = 0.35
-"""And faster than this [m/s], aside and backward, too, of who is held to go by a stick, and has even floor before him: a small leap, off one foot onto the other."""
+GOES, CREEPS = (0.35, 0.14), 0.45
+"""And faster than the first of these [m/s], aside and backward, too, of who is held to go by a stick, and has even floor before him: a small leap, off one foot onto the other. Or
+than the other, whose stick is tilted by no more than the third: he goes about as fast as it asks, and does not set off."""
 ARC, BENDS, BENT = 0.1, 0.26, 0.05
 """Faster than the first [rad/s] somebody goes along an arc. He leans into it, so that his foot sends him so long [s] farther round it: there the ring lies, and stays ahead of
 who turns by more than the third [rad] as he waits for his footfall."""
 STANDS = 0.2
 """Who still walks faster than this [m/s] as he lets go of a ring at which he aimed from a stand comes to rest before it: it stays where it is."""
+RESTED = 0.03
+"""And who is faster than this [m/s] is not refused yet for his pace: once he rests he may leap after all."""
 PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
 SWINGS = 3.0
@@ -40,6 +43,9 @@ FARTHEST = 1.4
 """How far from a standing body the ring may be, over how far it leaps over level ground: so far it may leap down."""
 BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
+ONTO, STEADY = 0.05, 0.02
+"""And on a box so far beyond what it reaches [m]: who aims farther is off later, as he looks for where he can land instead. There it lies on a grid so fine [m], lest another leap be asked, and
+looked for anew, with each millimetre that somebody still glides."""
 CLIMBS = 1.5
 """Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
 OVER_EDGE = 0.86, 1.9
@@ -68,7 +74,7 @@ TURNS_ROUND = 0.2
 """Who holds the button for longer [s] turns to the ring on his feet meanwhile, and to one on something goes on with that when it is let go: one leaps farther ahead than aside."""
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
-RESTS, FALLING = 0.35, 0.1
+RESTS, FALLING = 0.12, 0.1
 """A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
 
 Reaches = Callable[[float], float]
@@ -106,6 +112,7 @@ class Aim:
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
+    skips: he went slowly enough for that as he let go.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -120,12 +127,13 @@ class Aim:
     tilt: float = 0.0
     course: float = 0.0
     even: bool = False
+    skips: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
-             farthest: float = math.inf, even: bool = False) -> Aim:
+             farthest: float = math.inf, even: bool = False, now: CharacterState | None = None) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
         the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first.
-        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free."""
+        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free. now: how it goes until then, where that is another state."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
@@ -139,18 +147,22 @@ class Aim:
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         if not wish.jump:
             if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*self.offset) >= NEAR else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even)
+                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*self.offset) >= NEAR else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even, skips=self.moving and _pace(state) < SLOWLY[1])
             sets = state.refused == SETS_FEET
             if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
                 offset = _ring(state)
                 return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
-            given_up = self.waiting <= dt and not aloft or not self.moving and not sets and state.refused
+            goes = _pace(state if now is None else now)
+            slows = not self.moving and goes > RESTED and state.refused.startswith(PACE)  # once he rests he is asked again
+            if slows and goes > MOVING and state.refused.startswith(TOO_NEAR) and even and not stays and math.hypot(*offset) < NEAR:
+                return self._led_on(state if now is None else now, dt)
+            given_up = self.waiting <= dt and not aloft or not self.moving and not sets and not slows and state.refused
             pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
             if given_up:
                 return Aim()
             gone = self._gone_round(state)
             return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt, even=even)
-        moving, heading, place = _pace(state) > (GOES if even and tilt >= RESTS and not stays else MOVING), None, None  # who goes back from it stands soon
+        moving, heading, place = _pace(state) > (self._least(state, tilt) if even and not stays else MOVING), None, None  # who goes back from it stands soon
         if moving:
             offset = _ring(state)
         else:
@@ -161,6 +173,18 @@ class Aim:
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
         return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state), even=even)
+
+    def _least(self, state: CharacterState, tilt: float) -> float:
+        """Faster than this [m/s] a leap goes on the way of one before whom the floor is even, whose stick is tilted so far. Who aims from a stand moves the ring with it, as he
+        turns, too."""
+        if tilt < RESTS:
+            return MOVING
+        return GOES[tilt <= CREEPS and state.active != "jump" and (self.moving or not self.aiming)]
+
+    def _led_on(self, state: CharacterState, dt: float) -> Aim:
+        """The same of one who wants to leap straight up, but comes down too fast for that: the ring lies ahead of him, as of everybody who goes so fast."""
+        x, z = _ring(state)
+        return replace(self, waiting=self.waiting - dt, moving=True, offset=(x, z), place=(float(state.ground[0]) + x, float(state.ground[1]) + z), course=course_of(state))
 
     def _gone_round(self, state: CharacterState) -> Aim:
         """The same of one who goes along an arc as he waits, and has turned: his ring stays ahead of him, as far away as it is."""
@@ -181,7 +205,8 @@ class Aim:
 
     def _goes(self, state: CharacterState) -> bool:
         """Whether somebody goes on by a small leap, slowly, aside or backward."""
-        return self.moving and self.even and _pace(state) < SLOWLY[1]
+        # who brakes from a run leaps to where he let go of the ring as long as he can
+        return self.moving and self.even and _pace(state) < (SLOWLY[1] if self.aiming or self.skips or state.refused else MOVING)
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
@@ -236,8 +261,9 @@ class Aim:
         if not self.moving and math.hypot(*self.offset) < NEAR:
             airtime = min(AIRTIME + CHARGE * (self.held + ahead), LONGEST) * math.sqrt(9.81 / gravity)
             return Leap(None, min(airtime, longest), heading=self.heading)
-        if self._goes(state):
-            return Leap(None, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
+        if self._goes(state) and not (self.rests and state.active == "jump"):
+            turns = self.course if abs(float(state.velocity[1])) > ARC and _pace(state) > MOVING else None
+            return Leap(None, heading=turns, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
         x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])
@@ -263,7 +289,7 @@ class Aim:
         aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring, and to one on something first
         there = floor_at(*place, around, floor + UP)
         far, up, reach = math.hypot(x, z), max(there - floor, 0.0), reaches(aside)
-        stops = reach - CLIMBS * up + BEYOND
+        stops = reach - CLIMBS * up + (ONTO if up > LOWER else BEYOND)
         if LOWER < up and reach < math.inf:
             past = past_edge(place, (float(state.ground[0]), float(state.ground[1])), there, around)
             stops = min(stops, far - max(past - max(OVER_EDGE[0] * reach - OVER_EDGE[1] * up, 0.0), 0.0))
@@ -271,6 +297,7 @@ class Aim:
         if share >= 1.0 or there < floor - LOWER:
             return place
         near = float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
+        near = near if up <= LOWER else (STEADY * round(near[0] / STEADY), STEADY * round(near[1] / STEADY))
         return near if floor_at(*near, around, floor + UP) > there - LOWER else place  # else it is too far off for any leap, which is told
 
     def _askew(self, state: CharacterState) -> bool:

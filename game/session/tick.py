@@ -76,8 +76,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         held = replace(wish, strafe=wish.strafe or player.pilot.locked)
         back = _back(player, character, stands, moment.after.props)
         farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
-        even = (held.jump or player.aim.wants) and even_ahead(stands, moment.after.props)
-        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even) if jump is not None else player.aim
+        even = (held.jump or player.aim.wants) and even_ahead(state, moment.after.props)
+        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even, state) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)

@@ -173,6 +173,21 @@ def test_a_body_that_turns_to_the_ring_behind_it_is_waited_for():
     assert not aimed(FREE, PATIENCE + 0.1, turned, behind).wants
 
 
+def test_who_comes_down_too_fast_to_leap_straight_up_has_the_ring_ahead_of_him_or_is_waited_for():
+    """He was refused: nothing came of a tap in the air once both feet had landed at 1.2 m/s."""
+    asked, why = aimed(HELD, 0.2, standing()).step(FREE, 0.0, standing(), False, DT), "too near for this pace: no foot brakes so much in one step"
+    rests, fast, slow = standing(refused=why), standing((1.3, 0.0, 0.0), refused=why), standing((0.7, 0.0, 0.0), refused=why)
+    led = asked.step(FREE, 0.0, rests, False, DT, even=True, now=fast)
+    assert led.moving and led.place == pytest.approx((1.0, 2.0 + math.hypot(*Aim().step(HELD, 0.0, fast, False, DT).offset)))
+    assert led.asked(replace(rests, memory=Duty("jump", None, "")), (), 9.81).place[[0, 2]] == pytest.approx(led.place)
+    for now, even in ((fast, False), (slow, True)):
+        waits = asked.step(FREE, 0.0, rests, False, DT, even=even, now=now)
+        assert not waits.moving and 0.0 < waits.waiting < asked.waiting
+    assert not asked.step(FREE, 0.0, rests, False, DT, even=True).wants, "who stands is refused at once"
+    assert asked.step(FREE, 0.0, standing((0.1, 0.0, 0.0), refused="too far for this pace: no foot speeds up so much in one step"), False, DT).wants, "he rests soon"
+    assert not asked.step(FREE, 0.0, standing((0.1, 0.0, 0.0), refused="too far: 2.0 m"), False, DT).wants, "who is refused for something else is told at once"
+
+
 def test_the_ring_stays_ahead_of_who_lets_go_of_it_in_the_air_and_goes_on():
     """It stayed where it was let go, and who had landed was too near to it: nothing came of leaps that were asked in the air."""
     state = standing((2.5, 0.0, 0.0))

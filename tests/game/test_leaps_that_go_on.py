@@ -10,7 +10,7 @@ from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.person import person
 from gambol.game.input import Wish
 from gambol.game.scene import Box
-from gambol.game.session import Timeline, begin
+from gambol.game.session import Timeline, begin, refused
 from gambol.game.world import RATE, Character, World
 
 HELD = 0.15
@@ -59,6 +59,21 @@ def test_who_is_told_to_leap_on_his_way_does_not_stop_for_it(someone, way, throw
 def test_walkers_who_leap_again_and_again_go_on(someone):
     moments = played(someone, 0.0, 1.0, np.arange(2.5, 8.0, 0.9), 8.0, False)
     assert len(leaps(moments)) >= 4 and went(moments, 5.0) > 0.85, "it was 0.6 m/s: every other leap was a hop on the spot"
+
+
+def test_who_taps_in_the_air_leaps_on_from_the_landing_that_brakes_him(someone):
+    line, made = Timeline(begin(World((Character("A", someone, someone.start()),)), 1)), []
+    for step in range(round(4.2 * RATE)):
+        held, yaw = step < 2.65 * RATE, line.now.players[0].camera.yaw
+        flies = len(made) == 1 and made[0].take_off + 0.1 < line.now.after.characters[0].state.memory.memory.time < made[0].take_off + 0.2
+        before = line.now
+        line.advance((Wish(move=(held * math.sin(yaw), held * math.cos(yaw)), run=0.35, jump=2.5 * RATE <= step < 2.65 * RATE or flies).rounded(),))
+        assert not refused(before, line.now)
+        memory = line.now.after.characters[0].state.memory.memory
+        if isinstance(memory, Jumping) and (not made or memory.plan is not made[-1]):
+            made.append(memory.plan)
+    assert len(made) == 2 and made[0].path.lands is None
+    assert np.linalg.norm((made[1].path.land - made[1].path.leave)[[0, 2]]) > 0.4, "ahead, as fast as he came down"
 
 
 def test_who_goes_slowly_up_to_a_box_stops_and_aims(someone):

@@ -137,6 +137,16 @@ def test_a_ring_pushed_over_a_high_box_stops_where_legs_still_clear_its_edge(som
     assert states[-1].floor == pytest.approx(high, abs=0.01)
 
 
+@pytest.mark.parametrize(("high", "far"), [(0.47, 1.32), (0.4, 1.62), (0.3, 1.66)])
+def test_who_steps_back_from_a_box_first_is_off_soon_after_he_lets_go(somebody, high, far):
+    """1.7 s went by: each millimetre that he still glided, another leap was asked, and looked for anew, and none of them could be made."""
+    hands = [(2.4, 1.0, False), (0.6, 0.0, False), (0.85, 1.0, True), (2.5, 0.0, False)]
+    states, _ = led(somebody, (box(high, far),), hands)
+    off = next(k for k, state in enumerate(states) if isinstance(getattr(state.memory, "memory", None), Jumping))
+    assert off * DT - sum(seconds for seconds, *_ in hands[:3]) < 0.9
+    assert states[-1].floor == pytest.approx(high, abs=0.01)
+
+
 @given(st.floats(0.05, 1.4), st.floats(0.3, 0.9))
 def test_how_far_a_ring_lies_past_an_edge(past, high):
     assert past_edge((0.0, 1.4 + past), (0.0, 0.6), high, (box(high),)) == pytest.approx(past, abs=0.013)

@@ -10,7 +10,7 @@ from .fall import fall
 from .footing import FADE, faded, settling, swivels
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
-from .going_slowly import Carried, carried
+from .going_slowly import LIKE, Carried, carried
 from .grounded import grounded
 from .hit import struck
 from .lying import BONES, FEET, TOUCHES, grounded_poses, places, sole_places
@@ -23,7 +23,7 @@ from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "CLEARS", "FADE", "Carried", "FEET", "FREE", "HEEL", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STRAIGHTEST",
+    "BONES", "CLEARS", "FADE", "Carried", "FEET", "FREE", "HEEL", "LIKE", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STRAIGHTEST",
     "between_kernel", "capsule_places", "carried", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "lifted", "lifts", "lowest", "near", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sole_places", "spread", "steps_over", "struck", "swivels", "tumbled",
 ]

@@ -17,18 +17,22 @@ from ..prior import EACH, LEGS, ROWS
 
 PUSHES = 0.22
 """So long [s] his foot gives and pushes, on Earth, at standard height."""
-FLIES, FASTER = (0.25, 0.34), (0.9, 1.1)
-"""He flies so long [s] who goes no faster than the first of these [m/s], in a low skip, and longer up to the second, from which on he leaps as walkers do; at standard height."""
+FLIES, FASTER = (0.42, 0.25, 0.25, 0.42), (0.1, 0.4, 0.9, 1.6)
+"""He flies so long [s] who goes so fast [m/s], at standard height: low in a skip, the higher the nearer he comes to standing still, as one hops on the spot, or to running, as runners leap."""
+LIKE = 1.1, 1.75
+"""Up to the first of these he skips, from the second on he leaps as runners do, and between them something of both, who goes ahead [m/s]; at standard height."""
 LOW = 0.015
 """So much lower he leaves than on a straight leg [m], at standard height: it would have to straighten at once."""
 WITHIN = 0.6, 0.11, 0.05
 """The force comes from within so much of the sole's half width, from no farther behind the ball than the second, since heels rise, and from no nearer to the tip than the
 third [m], at standard height."""
-LEAVES, STRAYS, WALKS = (0.85, 1.4, 1.75), 0.45, (0.38, 1.05)
+LEAVES, STRAYS, WALKS = (0.85, 1.4, 1.75), (0.45, 0.33), (0.38, 1.05)
 """He leaves no slower on his way than the first times as he goes, no faster than the second, or the third where that is slower than a walk, nor faster aside of it than so
-much; and no slower than one who walks, as fast as whom he may be [m/s], at standard height."""
-WAITED, EASED = (0.25, 0.3), (0.15, 0.2, 0.08)
-"""Who has waited for longer than the first, by the second [s], is content with so much less of each of the lower ones, and strays by so much more: the second of these."""
+much, or than the sway [m/s] of who hardly goes; and no slower than one who walks, if he goes as fast, as fast as whom he may be [m/s], at standard height."""
+BRISK, BRISKLY = (0.8, 1.2), (0.95, 1.3)
+"""Who goes faster than the first of these [m/s] leaves no slower, by and by, and from the second on not than the first times as he goes, and no faster than the second: there is a better moment soon."""
+WAITED, EASED = (0.25, 0.3), (0.15, 0.2, 0.08, 0.1)
+"""Who has waited for longer than the first, by the second [s], is content with so much less of each of the lower ones, and strays and sways by so much more: the second and the last of these."""
 CROSSES = 0.05
 """Who comes farther than this [m] past the foot that pushes, to its outer side, would bring the other leg past it, at standard height."""
 TRAILS = 0.16
@@ -79,14 +83,17 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     leave = pressed + (here - pressed) * cosh + speed * sinh / rate
     pace = max(float(np.linalg.norm(goes)), 1e-9)
     eased = min(max((waited - WAITED[0]) / WAITED[1], 0.0), 1.0)
-    slow, fast = math.sqrt(size) * (WALKS[0] - eased * EASED[2]), math.sqrt(size) * WALKS[1]
+    root = math.sqrt(size)
+    slow, fast = min(root * (WALKS[0] - eased * EASED[2]), pace), root * WALKS[1]
+    least, most = (float(np.interp(pace / root, BRISK, (usual, brisk))) for usual, brisk in zip(LEAVES, BRISKLY))
     along = goes / pace
     ahead = float(velocity @ along) / pace
     aside = float(np.linalg.norm(velocity - (velocity @ along) * along)) / pace
     past = float((leave - ball) @ facing[:, 0]) * (1 - 2 * start.single)
     lands = TRAILS * beside(start, velocity)
     place = leave + velocity * flies + lands + [0.0, floor, 0.0]
-    keeps = max(LEAVES[0] - eased * EASED[0], slow / pace) <= ahead <= max(LEAVES[1], min(LEAVES[2], fast / pace)) and aside <= STRAYS + eased * EASED[1] and past <= CROSSES * size
+    keeps = (max(least - eased * EASED[0], slow / pace) <= ahead <= max(most, min(LEAVES[2], fast / pace))
+             and aside <= max(STRAYS[0] + eased * EASED[1], root * (STRAYS[1] + eased * EASED[3]) / pace) and past <= CROSSES * size)
     return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
 
 
@@ -98,7 +105,8 @@ def airtime(velocity: np.ndarray, size: float) -> float:
 def calm(keys: np.ndarray, start: Start, rows: np.ndarray | int, size: float) -> np.ndarray:
     """The same keys (..., COLUMNS) of the carriage in rows (...), or nearer to how a body of a size over an adult's hangs of who goes slowly, aside or backward; who goes ahead
     swings his arms by turns, as he walks."""
-    if not start.along:
+    skips = skipping(start, size)
+    if not skips:
         return keys
     pace = max(float(np.linalg.norm(start.velocity * FLAT)), 1e-9)
     ahead = max(float(start.velocity @ yaw(start.heading)[:, 2]) / pace, 0.0)
@@ -107,7 +115,15 @@ def calm(keys: np.ndarray, start: Start, rows: np.ndarray | int, size: float) ->
     for side, arm in enumerate(ARMS):
         calmed[..., arm] += ahead * (HANGS[arm] - calmed[..., arm])
         calmed[..., arm.start] += -swung if side == start.single else swung
-    return calmed
+    return keys + skips * (calmed - keys)
+
+
+def skipping(start: Start, size: float) -> float:
+    """How much a leap of a body of a size over an adult's is a skip: all of one that goes slowly, aside or backward, less the nearer he comes to running, nothing of a runner's."""
+    if not start.along:
+        return 0.0
+    ahead = float(start.velocity @ yaw(start.heading)[:, 2]) / math.sqrt(size)
+    return float(np.interp(ahead, LIKE, (1.0, 0.0)))
 
 
 def beside(start: Start, towards: np.ndarray) -> np.ndarray:

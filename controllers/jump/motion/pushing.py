@@ -12,7 +12,7 @@ from .airborne import GROUND_RATE, Airborne
 from .clearing import ROWS as LIFT_ROWS
 from .descent import sinking
 from .footing import FADE, MOMENT, RUNNERS_HEEL, faded, heels_rise, heels_up, settling, swivels
-from .going_slowly import FOLDS, GIVES, straight_through
+from .going_slowly import FOLDS, GIVES, skipping, straight_through
 from .ground_kernels import FREE, ground_kernel
 from .path_estimate import Path
 from .swinging import CLEARS, lifted, lowest
@@ -47,7 +47,7 @@ class Pushing(Airborne):
         self.events = np.array([self.sinks, self.off, leave, leave + way.airtime])
         self.due = np.interp(np.arange(3 * BETWEEN + 1) / BETWEEN, np.arange(4), self.events)
         self.lifts = np.zeros((LIFT_ROWS, 2, EACH))
-        super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()), GIVES if start.along else 1.0)
+        super().__init__(physique, start, way, landing, leave, self.due, self._no_faster(start, way.keys[:3 * BETWEEN + 1, :LEGS].copy()), 1.0 - (1.0 - GIVES) * skipping(start, physique.size))
         self._prepare_ground()
 
     def _no_faster(self, start: Start, keys: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from ...body import yaw
 from ..body import FLAT, TAKE_OFF_REACH, BodyTables, Measures, Physique, Start, over, stretched, uphill
 from ..muscles import crouch_depth, strength
 from .footing import heels_up
-from .going_slowly import LOW, PUSHES
+from .going_slowly import LOW, PUSHES, skipping
 from .pendulum import waiting_kernel
 from .thrust import MOMENTS, moments, risen, upward
 
@@ -243,4 +243,4 @@ class Running:
 
     def _top(self, lead: float) -> float:
         """How high it leaves so far ahead of its foot [m]."""
-        return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0)) - (LOW * self.physique.size if self.start.along else 0.0)
+        return self.floor + over(STRIDE * self.heights.leave(0.0), max(lead, 0.0)) - LOW * self.physique.size * skipping(self.start, self.physique.size)

@@ -39,9 +39,11 @@ SETS_FEET = "it sets its feet first, which are too near each other, or turned to
 """Why nobody leaps yet whose legs would go through each other."""
 MOMENTARY = BESIDE, SETS_FEET
 """Why a leap is refused for a moment only: the next footfall may be another."""
+TOO_NEAR = "too near for this "
+"""So begins why a leap is refused for which who goes on would have to brake too much."""
 HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
-PACE = "too far for this ", "too near for this "
+PACE = "too far for this ", TOO_NEAR
 """And one for which the foot that pushes would have to speed up or brake too much."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
