@@ -6,9 +6,9 @@ from .controller import Following, Reconstruction
 from .following import towards
 from .database import Database, DatabaseError, build
 from .neighbours import Neighbourhood, Segments, Weights
-from .pose_vector import HEIGHT, JOINTS, SKELETON, WIDTH, encode
+from .pose_vector import ANGLES, HEIGHT, JOINTS, SKELETON, WIDTH, decode, encode
 
 __all__ = [
-    "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "ControlPoints", "Database", "DatabaseError", "Following",
-    "Neighbourhood", "Reconstruction", "Segments", "Weights", "build", "control_points", "encode", "parse", "towards",
+    "ANGLES", "HEIGHT", "JOINTS", "NAMES", "SETS", "SKELETON", "WIDTH", "ControlPoints", "Database", "DatabaseError", "Following",
+    "Neighbourhood", "Reconstruction", "Segments", "Weights", "build", "control_points", "decode", "encode", "parse", "towards",
 ]

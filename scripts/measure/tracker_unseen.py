@@ -19,14 +19,10 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 import numpy as np
 
 from gambol.controllers.body import forward_kinematics
-from gambol.controllers.reconstruction import JOINTS, SKELETON
+from gambol.controllers.reconstruction import ANGLES, JOINTS, SKELETON, decode
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.evaluation import foreign, learnt_from, small_of, strangers
-from gambol.controllers.reconstruction.pose_vector import ANGLES, decode
-from gambol.controllers.reconstruction.trackers import Moments, Network
-from gambol.controllers.reconstruction.trackers.ground import GROUND
-from gambol.controllers.reconstruction.trackers.samples import Batch
-from gambol.controllers.reconstruction.trackers.wearing import exactly, members
+from gambol.controllers.reconstruction.trackers import GROUND, Batch, Moments, Network, exactly, members
 from reconstruction_figures import table
 from reconstruction_trackers import asked, opened
 

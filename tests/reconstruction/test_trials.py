@@ -16,8 +16,8 @@ from scipy.stats import bootstrap
 from gambol.controllers.body import Pose
 from gambol.controllers.reconstruction.control_points import parse
 from gambol.controllers.reconstruction.database.database import Database, DatabaseError, Writer
-from gambol.controllers.reconstruction.evaluation import metrics, trials
-from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, SKELETON, decode
+from gambol.controllers.reconstruction.evaluation import metrics, small_of, trials
+from gambol.controllers.reconstruction.pose_vector import JOINTS, REFERENCE, SKELETON, WIDTH, decode
 from gambol.controllers.reconstruction.regression.method import SPAN
 
 from trajectories import frames as made_up
@@ -345,3 +345,25 @@ def test_the_script_names_what_is_wrong(script, five, database, monkeypatch, tmp
     monkeypatch.setattr(sys, "argv", ["measure/reconstruction.py", str(tmp_path / "nothing"), "--cache", str(tmp_path / "cache")])
     with pytest.raises(SystemExit, match="can't be read"):
         script.main()
+
+
+def test_a_large_database_must_hold_the_small_folder_and_know_what_its_takes_show(tmp_path):
+    """Takes are held out by what they show: a database that was told otherwise would hold out others."""
+    folder, file = tmp_path / "small", tmp_path / "large.gambolmotion"
+    (folder / "a").mkdir(parents=True)
+    for name in ("one", "two"):
+        (folder / "a" / f"{name}.bvh").touch()
+    frames = np.zeros((40, WIDTH))
+    with Writer(file) as writer:
+        writer.add("a/one", "a", "walk", frames, np.ones(40, bool))
+        writer.add("a/two", "a", "other", frames, np.ones(40, bool))
+    assert {take.clip for take in small_of(Database.open(file), folder).takes} == {"a/one", "a/two"}
+    index = folder / "index.tsv"
+    index.write_text("path\\taction\\na/one.bvh\\twalk\\n")
+    small_of(Database.open(file), folder)
+    index.write_text("path\\taction\\na/two.bvh\\trun\\n")
+    with pytest.raises(DatabaseError, match="a/two is said to show other, but run in .*index.tsv; build it"):
+        small_of(Database.open(file), folder)
+    (folder / "a" / "three.bvh").touch()
+    with pytest.raises(DatabaseError, match="lacks takes of"):
+        small_of(Database.open(file), folder)

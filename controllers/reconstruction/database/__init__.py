@@ -2,13 +2,13 @@
 and a store on disk for what was learnt from them.
 """
 
-from .build_database import build
+from .build_database import actions, build
 from .contacts import contacts, standing, tracks_of
 from .database import FPS, SUFFIX, Database, DatabaseError, Take, Writer
 from .default import default_database
 from .store import identity, kept
 
 __all__ = [
-    "FPS", "SUFFIX", "Database", "DatabaseError", "Take", "Writer", "build", "contacts", "default_database", "identity", "kept",
+    "FPS", "SUFFIX", "Database", "DatabaseError", "Take", "Writer", "actions", "build", "contacts", "default_database", "identity", "kept",
     "standing", "tracks_of",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..database import Database, DatabaseError, Take
+from ..database import Database, DatabaseError, Take, actions
 from .trials import long_takes, split, split_actions, without
 
 CMU = ("cmu/", "cmu_bvh/", "cmu_30fps/")
@@ -14,19 +14,25 @@ STRANGERS = ("10", "12", "26", "27", "32")
 
 
 def small_of(large: Database, folder: Path) -> Database:
-    """The takes of a large database whose clips lie in a folder of motion files. DatabaseError if it lacks some."""
+    """The takes of a large database whose clips lie in a folder of motion files. DatabaseError if it lacks some, or was told other actions of
+    them: takes are held out by what they show, so others would be tested, some of which what ships was learnt from."""
     clips = {path.relative_to(folder).with_suffix("").as_posix() for path in folder.rglob("*") if path.suffix.lower() in (".bvh", ".amc")}
     small = large.only([take for take in large.takes if take.clip in clips])
     if {take.clip for take in small.takes} != clips:
         raise DatabaseError(f"{large.path}: lacks takes of {folder}; the large database must hold the small one's, too")
+    known = {Path(name).with_suffix("").as_posix(): action for name, action in actions(folder).items()}
+    for take in small.takes:
+        if known.get(take.clip, take.action) != take.action:
+            raise DatabaseError(f"{large.path}: {take.clip} is said to show {take.action}, but {known[take.clip]} in {folder / 'index.tsv'}; "
+                                "build it from a folder with that index.tsv in it, or other takes are held out")
     return small
 
 
 def learnt_from(large: Database, small: Database) -> Database:
     """CMU's takes of a large database, less all that is tested on or tuned on in a small one that it holds, and less `STRANGERS`."""
     core = split(small.only([take for take in small.takes if not take.interpolated]))
-    actions = split_actions(small, avoid=core.validation)
-    rest = without(large, (*core.test, *core.validation, *actions.test, *long_takes(large)))
+    apart = split_actions(small, avoid=core.validation)
+    rest = without(large, (*core.test, *core.validation, *apart.test, *long_takes(large)))
     return rest.only([take for take in rest.takes if take.clip.startswith(CMU) and take.subject not in STRANGERS])
 
 

@@ -3,15 +3,17 @@ contacts, and the most probable pose on the performer's own skeleton.
 """
 
 from .bodies import bodies, legs
+from .ground import GROUND
 from .learning import HIDDEN, SIZE, Learner, judged
 from .network import SHIPPED, Network
 from .packed import packed
-from .samples import FIRST, LEGS, Moments, moments_kernel
+from .samples import FIRST, LEGS, Batch, Moments, moments_kernel
 from .slots import INPUTS, LAGS, PLACES, SLOTS
 from .tracker_poses import Trackers
 from .tuning import BATCHES, SHARE, Tuner
+from .wearing import exactly, members
 
 __all__ = [
-    "BATCHES", "FIRST", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Learner", "Moments", "Network", "Trackers", "Tuner", "bodies",
-    "judged", "legs", "moments_kernel", "packed",
+    "BATCHES", "FIRST", "GROUND", "HIDDEN", "INPUTS", "LAGS", "LEGS", "PLACES", "SHARE", "SHIPPED", "SIZE", "SLOTS", "Batch", "Learner", "Moments", "Network", "Trackers",
+    "Tuner", "bodies", "exactly", "judged", "legs", "members", "moments_kernel", "packed",
 ]
