@@ -359,9 +359,9 @@ def test_a_large_database_must_hold_the_small_folder_and_know_what_its_takes_sho
         writer.add("a/two", "a", "other", frames, np.ones(40, bool))
     assert {take.clip for take in small_of(Database.open(file), folder).takes} == {"a/one", "a/two"}
     index = folder / "index.tsv"
-    index.write_text("path\\taction\\na/one.bvh\\twalk\\n")
+    index.write_text("path\taction\na/one.bvh\twalk\n")
     small_of(Database.open(file), folder)
-    index.write_text("path\\taction\\na/two.bvh\\trun\\n")
+    index.write_text("path\taction\na/two.bvh\trun\n")
     with pytest.raises(DatabaseError, match="a/two is said to show other, but run in .*index.tsv; build it"):
         small_of(Database.open(file), folder)
     (folder / "a" / "three.bvh").touch()
