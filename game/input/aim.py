@@ -137,32 +137,45 @@ class Aim:
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
-        if stopped and np.all(state.contacts):
-            x, z = self._there(state)
-            return replace(self, waiting=self.waiting - TURNS * dt, moving=False, offset=(x - float(state.ground[0]), z - float(state.ground[1])), tilt=math.hypot(*wish.move))
         x, z = self._there(state)
+        tilt = math.hypot(*wish.move)
+        if stopped and np.all(state.contacts):
+            return replace(self, waiting=self.waiting - TURNS * dt, moving=False, offset=(x - float(state.ground[0]), z - float(state.ground[1])), tilt=tilt)
         stays = not self.moving and (cramped or self.place is not None)
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
-        tilt = math.hypot(*wish.move)
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
-        if not wish.jump:
-            if self.aiming:
-                return replace(self, aiming=False, waiting=PATIENCE, place=(x, z) if self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*self.offset) >= NEAR else self.place, rests=rests, tilt=tilt, course=course_of(state), even=even, skips=self.moving and _pace(state) < SLOWLY[1])
-            sets = state.refused == SETS_FEET
-            if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
-                offset = _ring(state)
-                return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
-            goes = _pace(state if now is None else now)
-            slows = not self.moving and goes > RESTED and state.refused.startswith(PACE)  # once he rests he is asked again
-            if slows and goes > MOVING and state.refused.startswith(TOO_NEAR) and even and not stays and math.hypot(*offset) < NEAR:
-                return self._led_on(state if now is None else now, dt)
-            given_up = self.waiting <= dt and not aloft or not self.moving and not sets and not slows and state.refused
-            pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
-            if given_up:
-                return Aim()
-            gone = self._gone_round(state)
-            return replace(gone, waiting=self.waiting - pace * dt, offset=offset, place=(x, z) if stays else gone.place, rests=rests, tilt=tilt, even=even)
-        moving, heading, place = _pace(state) > (self._least(state, tilt) if even and not stays else MOVING), None, None  # who goes back from it stands soon
+        told = replace(self, offset=offset, rests=rests, tilt=tilt, even=even)
+        if wish.jump:
+            return told._aimed(wish, camera_yaw, state, stays, farthest, dt)
+        if self.aiming:
+            return told._let_go((x, z), self.offset, state)
+        return self._waits(told, state, state if now is None else now, aloft, cramped, stopped, stays, dt)
+
+    def _let_go(self, there: tuple[float, float], offset: tuple[float, float], state: CharacterState) -> Aim:
+        """The button is let go: the ring of who moves stays where it is in the world, x, z [m], and that of who comes to rest before it. offset: where it was of him."""
+        fixed = self.moving or _pace(state) > STANDS and state.active != "jump" and math.hypot(*offset) >= NEAR
+        return replace(self, aiming=False, waiting=PATIENCE, offset=offset, place=there if fixed else self.place, course=course_of(state),
+                       skips=self.moving and _pace(state) < SLOWLY[1])
+
+    def _waits(self, told: Aim, state: CharacterState, now: CharacterState, aloft: bool, cramped: bool, stopped: bool, stays: bool, dt: float) -> Aim:
+        """The same of one who let go and has not leapt yet: he waits for his footfall, turns to the ring, rests first, or gives up. told: with what the step brought."""
+        sets = state.refused == SETS_FEET
+        if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
+            offset = _ring(state)
+            return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
+        goes = _pace(now)
+        slows = not self.moving and goes > RESTED and state.refused.startswith(PACE)  # once he rests he is asked again
+        if slows and goes > MOVING and state.refused.startswith(TOO_NEAR) and told.even and not stays and math.hypot(*told.offset) < NEAR:
+            return self._led_on(now, dt)
+        if self.waiting <= dt and not aloft or not self.moving and not sets and not slows and state.refused:
+            return Aim()
+        pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
+        gone = self._gone_round(state)
+        return replace(gone, waiting=self.waiting - pace * dt, offset=told.offset, place=self._there(state) if stays else gone.place, rests=told.rests, tilt=told.tilt, even=told.even)
+
+    def _aimed(self, wish: Wish, camera_yaw: float, state: CharacterState, stays: bool, farthest: float, dt: float) -> Aim:
+        """The button is held: the ring goes ahead of who moves, and with the stick of who stands."""
+        moving, heading, place, offset = _pace(state) > (self._least(state, self.tilt) if self.even and not stays else MOVING), None, None, self.offset  # who goes back from it stands soon
         if moving:
             offset = _ring(state)
         else:
@@ -172,7 +185,7 @@ class Aim:
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=rests, tilt=tilt, course=course_of(state), even=even)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, course=course_of(state), even=self.even)
 
     def _least(self, state: CharacterState, tilt: float) -> float:
         """Faster than this [m/s] a leap goes on the way of one before whom the floor is even, whose stick is tilted so far. Who aims from a stand moves the ring with it, as he
