@@ -42,7 +42,7 @@ SAYING = 0.1
 MEAN = 0.999
 """What is left of the weights' mean a batch later."""
 UNSURE = 0.5
-"""So little of what the errors of a pose's numbers have to do with each other is believed of other people (shrinkage, Ledoit & Wolf 2004)."""
+"""How much of what the errors of a pose's numbers have to do with each other is not believed of other people (shrinkage, Ledoit & Wolf 2004)."""
 KINDS = ("Hips Head LeftHand RightHand LeftFoot RightFoot", "LeftHand RightHand LeftFoot RightFoot", "Head LeftHand RightHand",
          "Hips LeftHand RightHand LeftFoot RightFoot", "LeftHand LeftFoot RightFoot", "RightHand LeftFoot RightFoot",
          "LeftHand RightFoot", "RightHand LeftFoot", "Head LeftHand RightHand LeftFoot RightFoot",
