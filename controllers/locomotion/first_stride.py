@@ -33,6 +33,9 @@ SIDEWAYS = 0.5
 SHARE_HALFLIFE = 0.08
 """With this half-life [s] what is shown follows the wish, smoothly, or arms would jerk as it changes."""
 
+AGO = 0.004
+"""How fast what is shown changes is told over this time [s]."""
+
 
 class Starting(NamedTuple):
     """What the step must know: spline coefficients (2, 2, K, COLUMNS): left or right foot first; straight, by turning."""
@@ -94,7 +97,7 @@ def start_kernel(m, start, wish, dt):
         return
     if m.settled:
         for d in range(LABELS_AT):
-            m.blend[d] += _beyond(m, start, d)
+            m.blend[d] += _beyond(m, start, m.first, m.onset, 0.0, d)
         m.fade = SHIFT
         m.onset = 0.0
         return
@@ -111,13 +114,26 @@ def add_start(m, start, row):
     """Add to a row (COLUMNS,) what a character's start has beyond the blend."""
     if m.onset > 0.0 and start.coefficients.shape[2] > 0:
         for d in range(LABELS_AT):
-            row[d] += _beyond(m, start, d)
+            row[d] += _beyond(m, start, m.first, m.onset, 0.0, d)
 
 
 @kernel
-def _beyond(m, start, d):
-    """One column of what the start adds now."""
-    table = start.coefficients[m.first]
-    since = END - m.onset
+def break_off(m, start, first, onset, pace):
+    """A start that a turn breaks off goes over into the pose's offset, which fades. first, onset: its first foot, and how much phase of it was left; pace: how
+    fast that ran [1/s]."""
+    if start.coefficients.shape[2] == 0:
+        return
+    for d in range(LABELS_AT):
+        now = _beyond(m, start, first, onset, 0.0, d)
+        m.blend[d] += now
+        m.blend_rate[d] += (now - _beyond(m, start, first, onset + pace * AGO, AGO, d)) / AGO
+
+
+@kernel
+def _beyond(m, start, first, onset, ago, d):
+    """One column of what a start adds of which so much phase is left, as far as it showed so long ago [s]."""
+    table = start.coefficients[first]
+    since = END - onset
     at = WAITING + since * PER_CYCLE if since > 0.0 else WAITING * max(1.0 + since / BEFORE, 0.0)
-    return m.shares[0] * spline_kernel(table[0], d, at)[0] + m.shares[1] * spline_kernel(table[1], d, at)[0]
+    straight, turning = m.shares[0] - ago * m.shares_rate[0], m.shares[1] - ago * m.shares_rate[1]
+    return straight * spline_kernel(table[0], d, at)[0] + turning * spline_kernel(table[1], d, at)[0]

@@ -10,7 +10,7 @@ from ..body import spring_kernel
 from ..compiled import kernel
 from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command, stages
 from .control_space import SCALE
-from .first_stride import BEFORE, SHIFT, add_start, leans, leave_rest, shift_left, start_kernel
+from .first_stride import BEFORE, SHIFT, add_start, break_off, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
 from .foothold import plan_footholds, stride
 from .foretold_way import room_to_plan
@@ -64,9 +64,13 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         m = memory[n]
         on_floor(m, before)  # before a turn leads the ground frame back
         heed_halt(m, wish[n], settings, table, dt)
+        onset, first = m.onset, m.first
+        pace = _share_of_cycle(m, table, settings.agility, dt) / dt if onset > 0.0 else 0.0
         begin_turn(m, turns, wish[n], fresh)
         turn_corner(m, wish[n], dt)
         turn_back(m, turns, wish[n], settings, fresh)
+        if onset > 0.0 and m.turn != 0.0:
+            break_off(m, start, first, onset, pace)
         if m.turn != 0.0:
             step = lead_turn(m, turns, settings.agility, dt)
             _weigh(m, settings, dt, walk, run, table, changes, fresh, b, p, q, c)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from gambol.controllers.body import contact_points, feet_apart, forward_kinematics
 from gambol.controllers.contract import Intent
@@ -203,6 +204,29 @@ def test_turns_begin_without_a_jerk(locomotion):
             places.append(pose.root)
         push = np.linalg.norm(np.diff(np.array(places, float)[..., [0, 2]], 2, axis=0), axis=-1) * FPS * FPS
         assert push.max() < 10.0, push.max()
+
+
+def test_a_turn_that_breaks_a_start_off_goes_on_from_what_it_showed(locomotion):
+    """Who is about to set off, his arms and trunk already on their way, and is then told to go another way: nothing turns in a frame by more than in those beside it."""
+    count, still, broken, states = 48, 30, 0, []
+    at = still + 2 + np.arange(count) % 12
+    angle = np.where(np.arange(count) % 2, 1, -1) * np.linspace(0.9, 2.8, count)
+    state = locomotion.start(np.zeros((count, 3)))
+    for t in range(still + 30):
+        aside = np.where(t >= at, angle, 0.0)
+        way = (1.3 if t >= still else 0.0) * np.stack([np.sin(aside), np.cos(aside)], -1)
+        state, _ = locomotion.step(state, steer(state.ground, way, None, state.velocity[:, 1]), 1 / FPS)
+        states.append(state)
+    orientations = motion_of(locomotion, states)[1]
+    turned = np.swapaxes(orientations[:-1], -1, -2) @ orientations[1:]
+    angles = Rotation.from_matrix(turned.reshape(-1, 3, 3)).as_rotvec().reshape(turned.shape[:-1])
+    apart = np.linalg.norm(angles[1:-1] - 0.5 * (angles[:-2] + angles[2:]), axis=-1).max(-1)  # (T - 3, N), [t] of the step to state t + 2
+    turns, onsets = (np.array([s.memory[name] for s in states]) for name in ("turn", "onset"))
+    for n in range(count):
+        for t in np.flatnonzero((turns[1:, n] != 0.0) & (turns[:-1, n] == 0.0) & (onsets[:-1, n] > 0.0)) + 1:
+            broken += 1
+            assert np.degrees(apart[t - 2, n]) < 1.0, (n, t)
+    assert broken > 20
 
 
 def test_feet_keep_apart_as_they_turn(locomotion):
