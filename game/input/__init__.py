@@ -17,12 +17,12 @@ from .pilot import STEERING, Command, Pace, Pilot
 from .remap import as_toml, load, shared, user_file
 from .run_up import AHEAD, BRAKES, RUNS, THINKS, WAITED, RunUp, braked, last_chance, leaps, ring
 from .script import Script
-from .straight_ahead import agility, before, cramped, even_ahead, headlong, rises
-from .wish import STEPS, Wish, push
+from .straight_ahead import agility, before, cramped, even_ahead, headlong, onto, rises
+from .wish import STEPS, Wish, in_view, push
 
 __all__ = [
     "AHEAD", "BRAKES", "DEFAULT", "HOLDING", "JOINING", "MOUSE", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
     "Bindings", "Command", "FARTHEST", "Jump", "Keyboard", "Mouse", "Move", "NEAR", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml",
-    "before", "braked", "button_label", "cramped", "dead_zone", "drivers", "even_ahead", "headlong", "help_sheet", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
-    "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "shared", "user_file", "wheel_wish", "wishes",
+    "before", "braked", "button_label", "cramped", "dead_zone", "drivers", "even_ahead", "headlong", "help_sheet", "in_view", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
+    "onto", "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "shared", "user_file", "wheel_wish", "wishes",
 ]

@@ -74,8 +74,13 @@ TURNS_ROUND = 0.2
 """Who holds the button for longer [s] turns to the ring on his feet meanwhile, and to one on something goes on with that when it is let go: one leaps farther ahead than aside."""
 LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
+TAPS, COMES = 0.2, 0.5
+"""Who holds the button for less than the first [s] leaps as he goes; a foot that sends him comes within the second [s], for which he neither brakes nor turns back."""
 RESTS, FALLING = 0.12, 0.1
 """A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
+ELSEWHERE, TILTED = math.radians(60.0), 0.5
+"""Who let go, waits for his feet, and tilts the stick anew so far that it counts, by more than the first [rad] off the way to the ring and off where he held it, wants to go there: the ring
+is given up."""
 
 Reaches = Callable[[float], float]
 """About how far a standing body leaps [m], so far aside [rad] of the way it faces."""
@@ -89,6 +94,11 @@ def anywhere(aside: float) -> float:
 def _pace(state: CharacterState) -> float:
     """How fast somebody goes [m/s]."""
     return float(np.hypot(state.velocity[0], state.velocity[2]))
+
+
+def _between(one: tuple[float, float], other: tuple[float, float]) -> float:
+    """The angle [rad] between two ways; half a turn where the other is none."""
+    return math.pi if not any(other) else abs(math.remainder(math.atan2(*one) - math.atan2(*other), math.tau))
 
 
 def course_of(state: CharacterState) -> float:
@@ -112,7 +122,7 @@ class Aim:
     [m] in the world where somebody who moved let go of the ring, or where it stays of who goes back from it. heading: [rad] in which to land, None where nobody said so.
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
-    skips: he went slowly enough for that as he let go.
+    skips: he went slowly enough for that as he let go. stick: where (2,) in the world it was held as the button was let go, nowhere since it came to rest.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -128,12 +138,14 @@ class Aim:
     course: float = 0.0
     even: bool = False
     skips: bool = False
+    stick: tuple[float, float] = (0.0, 0.0)
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
-             farthest: float = math.inf, even: bool = False, now: CharacterState | None = None) -> Aim:
+             farthest: float = math.inf, even: bool = False, now: CharacterState | None = None, ahead: tuple[float, float] | None = None) -> Aim:
         """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
         the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first.
-        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free. now: how it goes until then, where that is another state."""
+        farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free. now: how it goes until then, where that is another state.
+        ahead: where x, z [m] from his feet the ring lies at first of one whom something holds up, see `straight_ahead.onto`."""
         if leaving or wish.jump and self.spent:
             return Aim(spent=wish.jump and (self.aiming or self.spent))
         stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
@@ -144,11 +156,14 @@ class Aim:
         stays = not self.moving and (cramped or self.place is not None)
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
-        told = replace(self, offset=offset, rests=rests, tilt=tilt, even=even)
+        stick = in_view(wish.move, camera_yaw)
+        told = replace(self, offset=offset if ahead is None or self.aiming else ahead, rests=rests, tilt=tilt, even=even, stick=stick if self.aiming else self.stick if tilt >= RESTS else (0.0, 0.0))
         if wish.jump:
             return told._aimed(wish, camera_yaw, state, stays, farthest, dt)
         if self.aiming:
             return told._let_go((x, z), self.offset, state)
+        if not self.moving and not aloft and tilt >= TILTED and min(_between(stick, told.offset), _between(stick, told.stick)) > ELSEWHERE and math.hypot(*offset) >= NEAR:
+            return Aim(tilt=tilt)
         return self._waits(told, state, state if now is None else now, aloft, cramped, stopped, stays, dt)
 
     def _let_go(self, there: tuple[float, float], offset: tuple[float, float], state: CharacterState) -> Aim:
@@ -171,7 +186,7 @@ class Aim:
             return Aim()
         pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
         gone = self._gone_round(state)
-        return replace(gone, waiting=self.waiting - pace * dt, offset=told.offset, place=self._there(state) if stays else gone.place, rests=told.rests, tilt=told.tilt, even=told.even)
+        return replace(gone, waiting=self.waiting - pace * dt, offset=told.offset, place=self._there(state) if stays else gone.place, rests=told.rests, tilt=told.tilt, even=told.even, stick=told.stick)
 
     def _aimed(self, wish: Wish, camera_yaw: float, state: CharacterState, stays: bool, farthest: float, dt: float) -> Aim:
         """The button is held: the ring goes ahead of who moves, and with the stick of who stands."""
@@ -263,6 +278,11 @@ class Aim:
     def wants(self) -> bool:
         """Whether a jump is aimed at, or waited for."""
         return self.aiming or self.waiting > 0.0
+
+    @property
+    def takes_off(self) -> bool:
+        """Whether somebody on the move is about to leap, as he goes: he tapped the button, or let go of it not long ago."""
+        return self.moving and (self.held < TAPS if self.aiming else self.waiting > PATIENCE - COMES)
 
     def target(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf, ahead: float = 0.0,
                reaches: Reaches = anywhere) -> Leap | None:

@@ -35,6 +35,8 @@ BACK = 0.25
 """He makes room for that who has so much of it behind him [m]."""
 EVEN, LEVEL = (0.25, 0.5, 0.75, 1.0, 1.25), 0.05
 """Who goes slowly leaps on over floor that is no higher or lower than the second [m] so far before him [m]."""
+ONTO, OTHER = np.arange(0.65, 1.26, 0.05), 0.05
+"""Who is held up before something and jumps lands at the first of these [m] ahead where there is room on what is higher or lower than his own floor by more than the second [m]."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
 
@@ -113,6 +115,19 @@ def cramped(controller: Any, state: CharacterState, place: Sequence[float], arou
     lacks = lacking(here, ahead, floor, around, controller.size, float(np.hypot(*way)))
     behind = here - (BACK + lacks) * ahead
     return lacks if lacks and room(behind, floor, around) > 0.0 and abs(floor_at(float(behind[0]), float(behind[1]), around, floor + STEP) - floor) < RISES else 0.0
+
+
+def onto(state: CharacterState, way: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
+    """Where x, z [m] from somebody who stands, held up before something on his way (2,), his ring lies at first: on what he stands before, or below the edge; None where
+    there is no room, or the same floor as his own."""
+    floor, goes = float(state.floor), math.hypot(*way)
+    for far in ONTO if goes > 0.0 else ():
+        x, z = (float(far) * part / goes for part in way)
+        there = np.asarray(state.ground[:2], float) + (x, z)
+        high = floor_at(float(there[0]), float(there[1]), around, floor + UP)
+        if abs(high - floor) > OTHER and room(there, high, around) > 0.0:
+            return x, z
+    return None
 
 
 def rises(controller: Any, state: CharacterState, velocity: Sequence[float], around: Sequence[Any], share: float = 1.0, more: float = 0.0) -> bool:

@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import BRAKES, FARTHEST, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, even_ahead, headlong, landing, last_chance, leaps, leaving, push, ring, rises
+from ..input import BRAKES, FARTHEST, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, even_ahead, headlong, in_view, landing, last_chance, leaps, leaving, onto, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -77,7 +77,9 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         back = _back(player, character, stands, moment.after.props)
         farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
         even = (held.jump or player.aim.wants) and even_ahead(state, moment.after.props)
-        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even, state) if jump is not None else player.aim
+        held_up = held.jump and not player.aim.wants and player.run_up.halt is not None
+        ahead = onto(state, in_view(held.move, player.camera.yaw), moment.after.props) if held_up else None
+        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even, state, ahead) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
@@ -87,6 +89,9 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         props = moment.after.props
         facing = aim.facing(stands, props, back is not None)
         command = replace(command, facing=command.facing if facing is None else facing)
+        x, z = in_world(state.ground, state.velocity)
+        if aim.takes_off and (aim.rests or command.velocity[0] * x + command.velocity[1] * z < 0.0):  # else he would brake until no foot sends him to the ring
+            command = replace(command, velocity=(float(x), float(z)))
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:
             run_up, command = _led(character, command, props)
