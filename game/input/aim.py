@@ -123,6 +123,7 @@ class Aim:
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
     skips: he went slowly enough for that as he let go. stick: where (2,) in the world it was held as the button was let go, nowhere since it came to rest.
+    led: for so long [s] the stick, which led him to what holds him up, pushes a ring that lies ahead already no farther.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -139,6 +140,7 @@ class Aim:
     even: bool = False
     skips: bool = False
     stick: tuple[float, float] = (0.0, 0.0)
+    led: float = 0.0
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf, even: bool = False, now: CharacterState | None = None, ahead: tuple[float, float] | None = None) -> Aim:
@@ -157,7 +159,8 @@ class Aim:
         offset = (x - float(state.ground[0]), z - float(state.ground[1])) if stays else self.offset
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         stick = in_view(wish.move, camera_yaw)
-        told = replace(self, offset=offset if ahead is None or self.aiming else ahead, rests=rests, tilt=tilt, even=even, stick=stick if self.aiming else self.stick if tilt >= RESTS else (0.0, 0.0))
+        led = self.led if self.aiming else 0.0 if ahead is None else math.hypot(*ahead) / PUSH
+        told = replace(self, offset=offset if ahead is None or self.aiming else ahead, led=led, rests=rests, tilt=tilt, even=even, stick=stick if self.aiming else self.stick if tilt >= RESTS else (0.0, 0.0))
         if wish.jump:
             return told._aimed(wish, camera_yaw, state, stays, farthest, dt)
         if self.aiming:
@@ -195,12 +198,13 @@ class Aim:
             offset = _ring(state)
         else:
             pushed = in_view(wish.move, camera_yaw)
-            x, z = (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
+            still = self.held < self.led and pushed[0] * offset[0] + pushed[1] * offset[1] > 0.0  # it lies where the stick would have pushed it to
+            x, z = offset if still else (offset[k] + PUSH * dt * pushed[k] for k in (0, 1))
             shrink = min(1.0, farthest / max(math.hypot(x, z), 1e-9))
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, course=course_of(state), even=self.even)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, course=course_of(state), even=self.even, led=self.led)
 
     def _least(self, state: CharacterState, tilt: float) -> float:
         """Faster than this [m/s] a leap goes on the way of one before whom the floor is even, whose stick is tilted so far. Who aims from a stand moves the ring with it, as he

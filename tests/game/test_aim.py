@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.contract import Duty
 from gambol.controllers.navigation import drift
-from gambol.game.input.aim import AIRTIME, LONGEST, PATIENCE, SWINGS, Aim
+from gambol.game.input.aim import AIRTIME, LONGEST, PATIENCE, PUSH, SWINGS, Aim
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box
 from gambol.game.world.world import DT
@@ -39,6 +39,16 @@ def test_the_stick_pushes_the_ring_as_the_camera_looks_and_not_too_far(yaw, stic
     # right on the stick is to the right of where the camera looks, which is less heading
     assert math.remainder(math.atan2(*aim.offset) - (yaw - stick), math.tau) == pytest.approx(0.0, abs=1e-6)
     assert aim.stands and aim.facing(standing(), ()) == pytest.approx(math.atan2(*aim.offset))
+
+
+def test_a_ring_that_lies_ahead_at_once_is_where_the_stick_would_have_pushed_it_or_farther():
+    """Of somebody whom something holds up, the stick still held: it waits there, and goes back at once."""
+    on, back = Wish(jump=True, move=(0.0, 1.0)), Wish(jump=True, move=(0.0, -1.0))
+    led = Aim().step(on, 0.0, standing(), False, DT, farthest=2.6, ahead=(0.0, 0.6))
+    for seconds in (0.1, 0.3, 0.5, 1.0):
+        pushed = aimed(on, seconds, standing()).offset[1]
+        assert aimed(on, seconds, standing(), led).offset[1] == pytest.approx(max(0.6, pushed), abs=2.0 * PUSH * DT)
+    assert aimed(back, 0.1, standing(), led).offset[1] < 0.5
 
 
 def test_who_let_go_of_the_stick_is_to_come_to_rest_where_he_lands():
