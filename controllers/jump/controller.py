@@ -31,8 +31,8 @@ STILL = 0.25
 """Who is slower than this [m/s, rad/s] stands, and may crouch."""
 PULLS = 0.1, 100.0
 """How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
-RISEN = 0.45
-"""So long after touch-down [s] a jumper can walk on."""
+RISEN, SOONEST, ON = 0.45, 0.3, 0.12
+"""So long after touch-down [s] a jumper has risen far enough to walk on; and sooner, but not before the second, as soon as so long [s] after the lowest point of his landing."""
 RISES = 0.1
 """Who crouches, but still comes up faster than this [m/s], at standard height, goes down first: his legs can't pull."""
 SPARES = 0.97
@@ -84,7 +84,8 @@ class Jump(Reach, Controller):
             return HOLDS if intent.leap is not None or intent.aim is not None or not (walks or state.memory.stands) else OVER
         if isinstance(state.memory, Jumping):
             walks = bool(np.abs(intent.velocity).max() > 0.05) or intent.leap is not None
-            landed = state.memory.time > max(state.memory.plan.touch_down + RISEN, state.memory.plan.rolls)
+            made = state.memory.plan
+            landed = state.memory.time > max(min(made.touch_down + RISEN, max(made.lowest + ON, made.touch_down + SOONEST)), made.rolls)
             return OVER if walks and landed else HOLDS
         if intent.around and self._lost_floor(state, intent):
             return HOLDS

@@ -89,3 +89,14 @@ def test_who_waits_to_leap_and_tilts_the_stick_elsewhere_goes_there_at_once(some
     assert not any(refused(before, after) for before, after in zip(away, away[1:]))
     for held in ([(3.0, Wish(move=AHEAD))], [(0.1, Wish()), (2.9, Wish(move=AHEAD))]):
         assert max(state.floor for state in states(played(somebody, (BOX,), start, *tap, *held))) == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize("plan, soon", [(((1.0, Wish()), (0.1, Wish(jump=True)), (0.8, Wish()), (1.5, Wish(move=AHEAD))), 0.75), (((1.0, Wish()), (1.0, Wish(move=AHEAD, jump=True)), (2.0, Wish(move=AHEAD))), 0.7)])
+def test_who_holds_the_stick_as_he_lands_on_both_feet_walks_on_as_he_rises(somebody, plan, soon):
+    """After a hop, and a leap as far as he can: he stood up first, and then set off."""
+    moved = states(played(somebody, (), (0.0, 0.0, 0.0, 0.0), *plan))
+    lands = max(k for k, state in enumerate(moved) if state.active == "jump" and not np.any(state.contacts)) + 1
+    roots = np.array([state.pose.root for state in moved])
+    speed = np.linalg.norm(roots[lands + 6:, [0, 2]] - roots[lands:-6, [0, 2]], axis=-1) / (6 * DT)
+    walks = next(k for k in range(20, len(speed)) if speed[k] > 0.6) * DT
+    assert walks < soon
