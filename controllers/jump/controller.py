@@ -32,7 +32,8 @@ STILL = 0.25
 PULLS = 0.1, 100.0
 """How hard a world may pull [m/s²]: on a little moon of ten metres' jumps, and on one where nobody gets up."""
 RISEN, SOONEST, ON = 0.45, 0.3, 0.12
-"""So long after touch-down [s] a jumper has risen far enough to walk on; and sooner, but not before the second, as soon as so long [s] after the lowest point of his landing."""
+"""So long after touch-down [s] a jumper has risen far enough to walk on; and sooner, but not before the second, as soon as so long [s] after the lowest point of his landing,
+unless he struck something."""
 RISES = 0.1
 """Who crouches, but still comes up faster than this [m/s], at standard height, goes down first: his legs can't pull."""
 SPARES = 0.97
@@ -85,7 +86,8 @@ class Jump(Reach, Controller):
         if isinstance(state.memory, Jumping):
             walks = bool(np.abs(intent.velocity).max() > 0.05) or intent.leap is not None
             made = state.memory.plan
-            landed = state.memory.time > max(min(made.touch_down + RISEN, max(made.lowest + ON, made.touch_down + SOONEST)), made.rolls)
+            soon = made.touch_down + RISEN if state.memory.fault else min(made.touch_down + RISEN, max(made.lowest + ON, made.touch_down + SOONEST))
+            landed = state.memory.time > max(soon, made.rolls)
             return OVER if walks and landed else HOLDS
         if intent.around and self._lost_floor(state, intent):
             return HOLDS

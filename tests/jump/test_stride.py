@@ -173,7 +173,7 @@ def leapt(person, pace, late, stays=False):
     leap = Leap(np.array([state.ground[0], 0.0, state.ground[1] + AHEAD[0] + AHEAD[1] * pace]), slack=SLACK, stays=stays)
     knees, places = [], []
     for _ in range(130):
-        state, pose = person.step(state, Intent(wish, leap if made is None else None), 1 / FPS)
+        state, pose = person.step(state, Intent(wish if made is None or not stays else 0.0 * wish, leap if made is None else None), 1 / FPS)
         way.append(pose.root[2])
         knees.append(np.linalg.norm(log(pose.rotations[legs]), axis=-1))
         places.append(forward_kinematics(person.skeleton, pose.root, pose.rotations)[0][hands])
