@@ -16,7 +16,7 @@ from ..navigation import STEP, floor_at
 from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Carried, Plan, between_kernel, carried, fall, over_nothing, steps_over, struck
+from .motion import Carried, Plan, as_shown, between_kernel, carried, fall, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
@@ -98,7 +98,7 @@ class Jump(Reach, Controller):
     def enter(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state at the beginning of a planned jump, of a crouch, or of a fall if it stepped over an edge. Refused, with the reason,
         if the jump can't be made."""
-        return self._began(state, intent) or replace(state, memory=Jumping.begun(self.plan(state, intent), state, intent.leap))
+        return self._began(state, intent) or replace(state, memory=self._begins(self.plan(state, intent), state, intent.leap))
 
     def seek(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> CharacterState:
         """The same, of which no more is worked out than a step has time for. Refused for now, too, who still sets his feet."""
@@ -107,7 +107,12 @@ class Jump(Reach, Controller):
             return began
         if self._sets_feet(state) and not along_of(state, intent.leap):
             raise Refused(SETS_FEET, onward=Onward(None))
-        return replace(state, memory=Jumping.begun(self.sought(state, intent, onward), state, intent.leap))
+        return replace(state, memory=self._begins(self.sought(state, intent, onward), state, intent.leap))
+
+    def _begins(self, made: Plan, state: CharacterState, leap: Leap | None) -> Jumping:
+        """The memory of one who begins a planned leap, his legs as they were shown."""
+        roots, local = as_shown(self.physique, start_of(self.physique, state), made.times, made.roots, made.local)
+        return Jumping.begun(replace(made, roots=roots, local=local), state, leap)
 
     def _began(self, state: CharacterState, intent: Intent) -> CharacterState | None:
         """The state at the beginning of what needs no plan, a crouch or a fall; None where a leap is asked."""
@@ -350,7 +355,7 @@ class Jump(Reach, Controller):
         if same and memory.onward is None:
             return state
         try:
-            return replace(state, memory=Jumping.begun(self.sought(state, intent, memory.onward if same else None), state, leap))
+            return replace(state, memory=self._begins(self.sought(state, intent, memory.onward if same else None), state, leap))
         except Refused as reason:
             return replace(state, memory=replace(memory, refused=str(reason), asked=leap, onward=reason.onward))
 

@@ -16,7 +16,7 @@ import numpy as np
 from ..body import Pose, yaw
 from ..contract import CharacterState, Leap
 from .body import FLAT, FOOT_FADE, FLEX, Start, carriage, measures, soles, standing, turns, vectors
-from .motion import FADE, deepest, faded, ground_kernel, near, swivels
+from .motion import FADE, LASTS, Shown, deepest, faded, ground_kernel, near, swivels
 from .prior import BETWEEN, LEGS
 from .reach import Onward, Reach
 from .starting import stands, turning
@@ -31,6 +31,8 @@ SHARES = np.linspace(1.0, 0.0, 6)
 """Who would come against something crouches by the largest of these shares of how far he would, lying no deeper in it than he does as he stands."""
 RISEN, SLOW = 0.01, 0.05
 """A body stands again that is so near to standing [m] and so slow [m/s]."""
+STEP = 1.0 / 240.0
+"""How a crouch begins is told from its first moments, so far apart [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +41,7 @@ class Crouching:
     the pelvis's first. planted: (2, 5) where its feet come to stand. place, rate, bend: (14,) where the centre of mass is [m] and how the body
     is carried [rad], and their first and second derivatives. goal: (14,) where they shall be. leap: for what it crouches, None as it
     stands up. refused: why the jump that was asked can't be made, asked: which one that was, onward: with what that is gone on with being found out.
-    stood: (4,) where it was left, see `starting.stands`.
+    stood: (4,) where it was left, see `starting.stands`. shown: what its legs differed by as it began, None for nothing.
     """
 
     start: Start
@@ -55,6 +57,7 @@ class Crouching:
     asked: Leap | None = None
     onward: Onward | None = None
     stood: np.ndarray | None = None
+    shown: Shown | None = None
 
     @property
     def stands(self) -> bool:
@@ -71,8 +74,10 @@ def begun(reach: Reach, start: Start, floor: float) -> Crouching:
     local[0] = yaw(start.heading) @ turns(carriage.STAND[:1] * [1.0, 0.0, 0.0])
     place, still = np.concatenate([start.centre, carriage.STAND]), np.zeros(LEGS)
     planted = start.planted(floor, reach.physique.tables)
-    return Crouching(start, 0.0, vectors(start.rotations @ np.swapaxes(local, -1, -2)), planted, place, np.concatenate([start.velocity, still]),
+    memory = Crouching(start, 0.0, vectors(start.rotations @ np.swapaxes(local, -1, -2)), planted, place, np.concatenate([start.velocity, still]),
                      np.concatenate([start.acceleration, still]), _upright(reach, start, planted, floor))
+    first = [moved(reach, memory, start.root, late)[1] for late in (0.0, STEP)]
+    return replace(memory, shown=Shown.of(reach.physique, start, STEP, *(np.array([getattr(pose, part) for pose in first]) for part in ("root", "rotations"))))
 
 
 def aimed(reach: Reach, memory: Crouching, leap: Leap | None, floor: float, around: Sequence[Any] = ()) -> Crouching:
@@ -127,6 +132,9 @@ def moved(reach: Reach, memory: Crouching, root: np.ndarray, dt: float) -> tuple
     roots, local, down = _posed(reach, start, after.place[None], faded(memory.offset, start.rates, FADE, now), feet, swivels(reach.physique, start, now), root)
     stands = np.ones(4, bool)
     stands[::2] = down[0] < RAISED
+    if memory.shown is not None:
+        roots, local = memory.shown.over(reach.physique, now, roots, local)
+        after = after if after.time < LASTS else replace(after, shown=None)
     return after, Pose(roots[0], local[0]), stands
 
 

@@ -90,8 +90,10 @@ def entered(locomotion: Any, state: CharacterState, wish: float = 0.0) -> Charac
     memory["stood"] = points[:, [0, 2]]
     memory["left_at"] = points[1::2, [0, 2]]  # a foot in the air passes over what lies from here on, not from where nobody was
     memory["offset"] = memory["offset_rate"] = memory["offset_push"] = memory["raised"] = memory["raised_rate"] = 0.0
-    apart = np.where(stands, points[:, 1] - contact_height(locomotion.skeleton), np.inf).reshape(2, 2).min(1)
-    memory["base"] = memory["left"] = np.where(np.isfinite(apart) & (np.abs(apart) > TREADS), apart, 0.0)  # its feet are on two treads
+    high = points[:, 1] - contact_height(locomotion.skeleton)
+    apart = np.where(stands, high, np.inf).reshape(2, 2).min(1)
+    apart = np.where(np.isfinite(apart), apart, np.minimum(high.reshape(2, 2).min(1), 0.0))  # a foot that leaves a lower tread goes up from there
+    memory["base"] = memory["left"] = np.where(np.abs(apart) > TREADS, apart, 0.0)  # its feet are on two treads
     return CharacterState(memory["ground"], memory["velocity"], state.pose, stands, memory, state.floor)
 
 

@@ -12,6 +12,7 @@ from ..body import Pose, Skeleton, contact_points, forward_kinematics
 from ..contract import CharacterState, Controller, Intent, Status, Strike, Unable, level, seconds
 from ..jump import GRAVITY, Physique, stands, start_of, stayed
 from ..jump.body import measures
+from ..jump.motion import as_shown
 from ..navigation import gap
 from ..navigation.passing import drawn_in
 from .capture import FALLS, Way, way
@@ -103,9 +104,16 @@ class Struck(Controller):
         """The state of who has just been struck. Unable where nothing strikes."""
         if intent.strike is None:
             raise Unable("nothing strikes it")
-        made = self._planned(state, intent, intent.strike)
+        made = self._begins(self._planned(state, intent, intent.strike), state)
         shift = np.asarray(state.ground, float) - [*made.centres[0, [0, 2]], made.headings[0]]
         return replace(state, memory=Recovering(made, 0.0, shift, stands(state)))
+
+    def _begins(self, made: Recovery, state: CharacterState) -> Recovery:
+        """The same, its legs as they were shown; of a fall that is still to settle as it is: that begins so."""
+        if made.settling is not None:
+            return made
+        roots, local = as_shown(self.physique, start_of(self.physique, state), made.times, made.roots, made.local)
+        return replace(made, roots=roots, local=local)
 
     def recovery(self, state: CharacterState, intent: Intent, strike: Strike) -> Recovery:
         """What becomes of a state that is struck: its mass centre's velocity is what it was and the impulse over the mass."""
@@ -170,6 +178,7 @@ class Struck(Controller):
             after = replace(after, contacts=after.contacts & np.repeat(np.arange(2) == made.landing(time, LANDED), 2))
         if made.fate == FALLS and memory.time < made.duration <= time and np.hypot(velocity[0], velocity[2]) < RESTS:
             home = self._home(after, intent, made.why)
+            home = home if home is None else self._begins(home, after)
             after = after if home is None else replace(after, memory=Recovering(home, 0.0, ground - [*home.centres[0, [0, 2]], home.headings[0]], after.memory.stood))
         return after, pose
 

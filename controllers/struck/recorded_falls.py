@@ -41,7 +41,9 @@ class Fall:
     def turns(self, times: np.ndarray) -> np.ndarray:
         """All joints' rotations (N, J, 3, 3) at times (N,) [s]."""
         keys, flat = np.arange(len(self.rows)) * SPACED, self.rows.reshape(len(self.rows), -1)
-        shown = hermite(keys, flat, monotone(keys, flat), np.clip(times, 0.0, keys[-1]))
+        slopes = monotone(keys, flat)
+        slopes[-1] = 0.0  # he has got up: recordings were cut while heads and arms still moved
+        shown = hermite(keys, flat, slopes, np.clip(times, 0.0, keys[-1]))
         return exp(shown.reshape(len(times), -1, 3))
 
 

@@ -92,8 +92,9 @@ def _floors(way: Way, floor: float, times: np.ndarray) -> np.ndarray:
 def _feet(start: Start, way: Way, free: np.ndarray, body, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The feet (N, 2, 6): balls, yaw, pitch, 1; whether they stand (N, 2); and how high the ground lies (N, 2) [m] where they stand, or will."""
     planted = start.planted(0.0, body)
-    planted[:, 1] += way.levels
-    feet, levels = np.ones((len(times), 2, 6)), np.tile(way.levels, (len(times), 1))
+    under = np.where(free, np.minimum(way.levels, start.feet[:, 1] - body.sole), way.levels)  # a foot in the air may be on its way down, as to a tread
+    planted[:, 1] += under
+    feet, levels = np.ones((len(times), 2, 6)), np.tile(under, (len(times), 1))
     feet[..., :5] = planted + faded(start.feet - planted, start.feet_rates, FOOT_FADE, times)
     feet[..., 1] = np.maximum(feet[..., 1], planted[:, 1])
     standing = np.tile(~np.asarray(free, bool), (len(times), 1))

@@ -65,7 +65,7 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
     try:
         made, parted = jump.plan(now, intent), whole(jump._looked_for(now, intent, True)).made
         np.testing.assert_array_equal(parted.local, made.local)
-        np.testing.assert_allclose(state.memory.memory.plan.local, jump.plan(someone.active(before)[1], intent).local, atol=1e-4)  # higher by a share of what it was
+        np.testing.assert_allclose(state.memory.memory.plan.local, jump.enter(someone.active(before)[1], intent).memory.plan.local, atol=1e-4)  # higher by a share of what it was
     except Refused as reason:
         assert state.refused == str(reason) and not isinstance(state.memory.memory, Jumping)
     again = states[3]

@@ -18,7 +18,7 @@ from ...navigation import floor_at, gap, slope_at
 from ..body import FLAT, TRAIL, Physique, Start, landing_feet, measures, rise, soles
 from ..prior import Prior
 from .capsules import capsule_places, near
-from .falling import LATE, Falling
+from .falling import LATE, REACHES, Falling
 from .hit import Hit, out_of
 from .path_estimate import Path, softened
 from .plan import Plan
@@ -33,6 +33,8 @@ BESIDE, ROUND, DEEP, HANGS = np.linspace(0.05, 0.3, 6), np.linspace(0.0, 2.0 * n
 something counts as so many, and a corner that hangs as so much [m]."""
 TUCKS = np.array([0.5, 1.0, 1.5])
 """A leg that would go into something, as into the edge that it leaves, is drawn up by one of these shares of `falling.TUCKED`."""
+QUICK = 5.0
+"""But by no more for each second that it has until it is where it lands: knees that were drawn up in no time whipped feet off low ledges."""
 GRAZES, SHIN = 0.01, 0.045
 """So deep [m] legs may be in something; how thick shins are [m], at standard height."""
 IN, NEARER, CLEARS = 0.015, 0.005, 0.03
@@ -101,7 +103,8 @@ def _fallen(physique: Physique, start: Start, hit: Hit | None, around: Sequence[
     falling = Falling(physique, start, way, landing, tucks, push, gives, like)
     best = falling.plan()
     deep = least = _deep(physique, best, around)
-    for tuck in TUCKS if like is None else TUCKS[1:2]:  # no longer than a frame or two may take
+    quickest = np.minimum(TUCKS if like is None else TUCKS[1:2], QUICK * min(way.airtime, REACHES))
+    for tuck in np.unique(quickest):  # no longer than a frame or two may take
         if deep.max() < GRAZES:
             break
         tucks = np.where(deep < GRAZES, tucks, tuck)

@@ -15,6 +15,8 @@ SHARES = {"Spine": 0.08, "Spine1": 0.08, "Spine2": 0.08, "Neck": 0.3, "Head": 0.
 """Which joint turns by which share of a look aside."""
 MOST, HASTE = 1.4, 4.0
 """How far aside of the pelvis one looks at most [rad], and how fast one turns the head there [rad/s]."""
+EASES = 0.12
+"""In about so long [s] a head that was still comes to turn that fast."""
 SPOT = 0.3
 """A place that is nearer [m] is no other: one looks at once where one will face."""
 LEADS = 0.5 * math.pi
@@ -47,12 +49,14 @@ class Look:
         after = turn + STAYS * (ahead - turn)
         times = np.array([0.0, way.wind_up, leave, leave + 0.5 * way.airtime, leave + way.airtime, leave + way.airtime + BACK])
         goals = np.array([0.0, to, ahead, 0.5 * (ahead + turn), after, turn]) - way.turned(times)
-        most = np.minimum(HASTE * times, MOST)
+        most = np.minimum(HASTE * times**2 / (times + EASES), MOST)
         return Look(times, np.append(np.clip(goals, -most, most)[:-1], 0.0), np.array([skeleton.index(name) for name in SHARES]), np.array([*SHARES.values()]))
 
     def turns(self, times: np.ndarray, count: int) -> np.ndarray:
         """How far (N, count, 3) [rad] each of so many joints is turned at times (N,) [s], in its parent's frame."""
         out = np.zeros((len(times), count, 3))
-        angle = hermite(self.times, self.angles, monotone(self.times, self.angles), np.minimum(times, self.times[-1]))
+        slopes = monotone(self.times, self.angles)
+        slopes[[0, -1]] = 0.0  # a head is turned from rest, and comes to rest
+        angle = hermite(self.times, self.angles, slopes, np.minimum(times, self.times[-1]))
         out[:, self.joints, 1] = angle[:, None] * self.shares
         return out
