@@ -20,7 +20,7 @@ from .motion import Carried, Plan, as_shown, between_kernel, carried, fall, over
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, along_of, astride, cramped, goes, landed, off_one, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
+from .starting import FEET, Jumping, along_of, astride, cramped, goes, landed, off_one, off_under, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
 LEVELS = 0.05
 """Who may land beside a place lands as high or low as it lies, to so much [m]."""
@@ -144,7 +144,7 @@ class Jump(Reach, Controller):
         if not isinstance(found, Found):
             if steps > 1 and float(np.linalg.norm(state.pose.root - began)) > ELSEWHERE:
                 raise Refused("", onward=self._seeks(state, intent))
-            raise Refused(*found)
+            raise Refused(*found, onward=Onward(None) if self.placed(state, leap, intent.around)[0].bound else None)  # the next moment may do
         assert leap is not None  # or nothing would have been found
         if steps == 1:
             return found.made
@@ -240,7 +240,8 @@ class Jump(Reach, Controller):
     def _ready(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> bool:
         """Whether a leap can start at this moment."""
         if not along_of(state, leap):
-            return ready(self.physique, state, around)
+            start, waits = off_under(self.physique, start_of(self.physique, state), leap, state, -float(self.gravity[1]), around)
+            return start.bound or not waits and ready(self.physique, state, around)
         start, floor = self.placed(state, leap, around)
         return start.along and self._carried(state, start, floor, leap).keeps
 
@@ -288,7 +289,8 @@ class Jump(Reach, Controller):
         memory, start = state.memory, start_of(self.physique, state, isinstance(state.memory, Crouching))
         if isinstance(memory, Jumping):
             return on_ground(turning(rebounding(start, memory.plan, memory.time) if memory.rebounds else start, leap), state, around), float(level(state.floor))
-        start = turning(off_one(self.physique, start, leap, state, -float(self.gravity[1])), leap)
+        gravity = -float(self.gravity[1])
+        start = turning(off_under(self.physique, off_one(self.physique, start, leap, state, gravity), leap, state, gravity, around)[0], leap)
         return astride(self.physique, on_ground(cramped(start, leap, np.asarray(state.ground, float), around), state, around), state)
 
     def step(self, state: CharacterState, intent: Intent, dt: float) -> tuple[CharacterState, Pose]:

@@ -180,7 +180,7 @@ def _swept(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[P
 def previewed(jump: Jump, state: CharacterState, leap: Leap, solid: Sequence[Prop]) -> Preview:
     """A jump as it would be made from a state, among solid props."""
     start, floor = jump.placed(state, None if leap.along else leap, solid)
-    start = _pushing(jump, start)
+    start = _pushing(jump, replace(start, along=False, bound=False))
     stand = jump.middle(start, floor)
     if leap.along:  # he waits for the foot that carries him there
         way = goes(state)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, Status, but
-from gambol.controllers.jump import MOMENTARY, Jumping
+from gambol.controllers.jump import MOMENTARY, Jumping, walks_to
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
 from .moves import Jump, Move
@@ -40,6 +40,8 @@ STANDS, STILL = 5.0, 0.1
 """Who has stood for so long [s], no faster than this [m/s], on his way along a path will hardly get on: it is told, and who ran up to a jump gives it up."""
 AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
+STRIDE = 0.8
+"""And a walker so much farther off [m]: he chooses among his next footfalls."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,18 +135,19 @@ class Making:
             place = onward = np.array([x, floor_at(x, z, jump.around, float(state.floor) + HOPS_UP), z])
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
+        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
         if move.runs:
             if (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
                 return replace(self, passed=self.asked > 0 and _straight(move)), intent
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
-            ready = self.run_up.halt is not None or far <= (AHEAD[0] + AHEAD[1] * speed * jump.slow if jump.within is None else jump.within)
+            near = AHEAD[0] + AHEAD[1] * speed * jump.slow + STRIDE * walks_to(state, leap)
+            ready = self.run_up.halt is not None or far <= (near if jump.within is None else jump.within)
         elif far > NEAR and jump.heading is None:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
             ready = abs(math.remainder(heading - float(state.ground[2]), math.tau)) < ASKEW
         else:
             ready = True
-        leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
         if not ready:
             runs = move.runs and state.active == "locomotion" and np.hypot(state.velocity[0], state.velocity[2]) > UNDER_WAY
             return self, replace(intent, aim=leap) if runs else intent

@@ -189,7 +189,7 @@ def leapt(person, pace, late, stays=False):
 def test_who_walks_on_lands_on_one_foot_and_does_not_come_to_rest(person, late):
     """On two he stood still after every leap, 0.01 of his speed left, and squatted to 96°."""
     made, pace, knees, _ = leapt(person, 1.3, late)
-    assert made.path.lands is not None and made.path.airtime > 0.4 and pace.min() > 0.45 * 1.3
+    assert made.path.lands is not None and made.path.airtime > 0.33 and pace.min() > 0.45 * 1.3
     assert np.degrees(knees[:, made.path.lands].max()) < 90.0
 
 

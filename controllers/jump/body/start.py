@@ -52,7 +52,8 @@ class Start:
     faster than it runs, as far as can be, on knees that turn no faster than people's; 1 as much faster as takes least force, on legs as straight as can be; 2 heels
     and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
     pitched against that ground. lands_on: (2,) how it rises where it lands. levels: (2,) how high each foot stands over the lower one's floor [m], as astride an edge.
-    stays: who walks wants to come to rest where he lands. cramped: beyond that is no room to run on. along: he goes slowly, aside or backward, and goes on so.
+    stays: who walks wants to come to rest where he lands. cramped: beyond that is no room to run on. along: he goes slowly, aside or backward, and goes on so. bound: he
+    walks, and pushes off the foot under him as those do, but to a place.
     """
 
     root: np.ndarray
@@ -78,6 +79,7 @@ class Start:
     stays: bool = False
     cramped: bool = False
     along: bool = False
+    bound: bool = False
 
     def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
         """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""

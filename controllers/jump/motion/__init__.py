@@ -4,6 +4,7 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 
 from .airborne import HEEL, PLANT, SAME
 from .as_shown import LASTS, Shown, as_shown
+from .bound import moments
 from .capsules import capsule_places, deepest, near
 from .clearing import depths, lifts, spread
 from .edges import over_nothing, steps_over
@@ -25,6 +26,6 @@ from .thrust import Push, push
 
 __all__ = [
     "BONES", "CLEARS", "FADE", "Carried", "FEET", "FREE", "HEEL", "LASTS", "LIKE", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STRAIGHTEST", "Shown", "as_shown",
-    "between_kernel", "capsule_places", "carried", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "lifted", "lifts", "lowest", "near", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "between_kernel", "capsule_places", "carried", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "lifted", "lifts", "lowest", "moments", "near", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sole_places", "spread", "steps_over", "struck", "swivels", "tumbled",
 ]

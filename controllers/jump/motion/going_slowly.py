@@ -68,19 +68,10 @@ class Carried(NamedTuple):
 def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, waited: float = 0.0) -> Carried:
     """How somebody leaves the foot that stands who goes so fast (3,) [m/s], off a floor [m], under gravity [m/s²] downward, and has waited [s] for it."""
     assert start.single is not None
-    body, size = physique.tables, physique.size
-    scale = math.sqrt(size * 9.81 / gravity)
-    pushes, flies = PUSHES * scale, airtime(start.velocity, size) * scale
-    foot, facing = start.planted(floor, body)[start.single], yaw(start.heading)
-    ball, turned = foot[:3] * FLAT, yaw(foot[3])
-    rate = math.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / max(float(start.centre[1]) - floor, 0.3 * size))
-    cosh, sinh = math.cosh(rate * pushes), math.sinh(rate * pushes)
-    here, speed = start.centre * FLAT, start.velocity * FLAT
-    pressed = turned.T @ (here + (speed * cosh - goes) / (rate * sinh) - ball)
-    wide = WITHIN[0] * HALF_SOLE * size
-    pressed = ball + turned @ [min(max(pressed[0], -wide), wide), 0.0, min(max(pressed[2], -WITHIN[1] * size), body.tip[2] - WITHIN[2] * size)]
-    velocity = (here - pressed) * rate * sinh + speed * cosh
-    leave = pressed + (here - pressed) * cosh + speed * sinh / rate
+    size = physique.size
+    flies = airtime(start.velocity, size) * math.sqrt(size * 9.81 / gravity)
+    velocity, leave = sent(physique, start, goes, floor, gravity, flies)
+    ball, facing = start.planted(floor, physique.tables)[start.single][:3] * FLAT, yaw(start.heading)
     pace = max(float(np.linalg.norm(goes)), 1e-9)
     eased = min(max((waited - WAITED[0]) / WAITED[1], 0.0), 1.0)
     root = math.sqrt(size)
@@ -95,6 +86,23 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     keeps = (max(least - eased * EASED[0], slow / pace) <= ahead <= max(most, min(LEAVES[2], fast / pace))
              and aside <= max(STRAYS[0] + eased * EASED[1], root * (STRAYS[1] + eased * EASED[3]) / pace) and past <= CROSSES * size)
     return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
+
+
+def sent(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, flies: float, longer: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """How fast (3,) [m/s] somebody leaves the foot that stands, and where (3,) [m], along the floor, who is to leave as near to so fast (3,) as it can, and flies so long [s]. longer: by what his push
+    takes longer than usual."""
+    assert start.single is not None
+    body, size = physique.tables, physique.size
+    pushes = longer * PUSHES * math.sqrt(size * 9.81 / gravity)
+    foot = start.planted(floor, body)[start.single]
+    ball, turned = foot[:3] * FLAT, yaw(foot[3])
+    rate = math.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / max(float(start.centre[1]) - floor, 0.3 * size))
+    cosh, sinh = math.cosh(rate * pushes), math.sinh(rate * pushes)
+    here, speed = start.centre * FLAT, start.velocity * FLAT
+    pressed = turned.T @ (here + (speed * cosh - goes) / (rate * sinh) - ball)
+    wide = WITHIN[0] * HALF_SOLE * size
+    pressed = ball + turned @ [min(max(pressed[0], -wide), wide), 0.0, min(max(pressed[2], -WITHIN[1] * size), body.tip[2] - WITHIN[2] * size)]
+    return (here - pressed) * rate * sinh + speed * cosh, pressed + (here - pressed) * cosh + speed * sinh / rate
 
 
 def airtime(velocity: np.ndarray, size: float) -> float:

@@ -15,6 +15,7 @@ from ..body import (FLAT, TOUCH_REACH, TRAIL, BodyTables, Physique, Start, apex_
                     take_off_velocity, TURNED)
 from ..prior import BETWEEN, EACH, LEGS, ROWS, Prior
 from .hopping import hopping
+from .bound import flies
 from .going_slowly import airtime as skips, beside, calm
 from .take_off import Running, Standing
 from .thrust import Push, push
@@ -163,7 +164,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         tilted = TILTED if start.runs else float(np.interp(fall, HARD, (1.0, TILTED)))
         height = max(min(heights.touch(trail * along, trail * (float(abs(lays @ yaw(start.lands)[:, 0])) if start.along else across)) - tilted * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * lays + [0.0, goal[1] + height, 0.0]
-        flight = float(airtime) if airtime is not None else max(
+        flight = float(airtime) if airtime is not None else flies(float(np.linalg.norm((land - leave) * FLAT)), float(land[1] - leave[1]), start.velocity, size, g) if start.bound else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
             ((skips(start.velocity, size) if start.along else RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)
@@ -211,7 +212,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
 def _stride(start: Start, velocity: np.ndarray, flight: float, gravity: np.ndarray, size: float) -> int | None:
     """On which foot a runner lands: the other one, if it is to run on and does not fall too fast for one leg."""
     aside, _, ahead = velocity @ yaw(start.lands)
-    if start.along and not start.stays and start.single is not None:
+    if start.along and not start.bound and not start.stays and start.single is not None:
         return 1 - start.single
     if start.single is None or ahead < STRIDES[2 if start.cramped else int(start.stays)] * np.sqrt(size) or abs(aside) > ASTRAY * ahead:
         return None

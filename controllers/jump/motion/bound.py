@@ -1,0 +1,107 @@
+"""When somebody who walks leaps to a place: off the foot that is under him, at the moment at which he leaves there with the least change of how he goes.
+
+A foot that has just struck is a step's half ahead of him, and brakes him until he is past it. In the next quarter of a second of his walk he comes over it, and past it, with the place the nearer;
+how fast he would leave off it at each of these moments is told as for who goes slowly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ..body import FLAT, Physique, Start, apex_airtime
+from .going_slowly import PUSHES, TRAILS, airtime, sent
+
+FLIES = 0.34, 0.44
+"""Who goes to a place flies as long as his speed takes there, at most so long [s], and no shorter than the first, or than a skip as fast where that is shorter; on Earth, at standard height."""
+RISES = 0.04
+"""He rises so much at least [m], at standard height, and higher than where he lands by as much."""
+LOWER = 0.08
+"""So much lower than he leaves he lands on level ground [m], at standard height."""
+USUAL, MOST = 2.1, 1.4
+"""Who leaves upward faster than the first [m/s], on Earth, at standard height, pushes so many times longer, up to the second."""
+UNTIL, EACH = 0.1, 0.03
+"""He leaps no later than this past the foot [m], at standard height; and the walk until there is looked at so often [m]."""
+LEAVES, MISSES = (0.85, 0.9, 1.38), (0.05, 0.09)
+"""He leaves no slower than the first times as he goes, in a moment to come than the second, and no faster than the last; and his foot sends him there within so much of how he goes, along his way and aside."""
+ASIDE = 0.45, 0.15
+"""And no faster aside of his way than so much of how fast he goes, in a moment that is, and in one to come: how he sways by then is not foretold."""
+AS_GOOD = 0.06, (0.15, 0.3)
+"""A moment is the best one if no later one off this foot changes his speed by so much less of it, nor one off one of the next by so much less, the second
+where hands wait for it."""
+STRIDE, LANDS, FEET = (0.28, 0.34), -0.36, 3
+"""His next foot comes down so far ahead of this one [m], and farther by so much for each m/s, as he is so far past it [m], at standard height; and so many feet are looked at."""
+
+
+def flies(far: float, up: float, velocity: np.ndarray, size: float, gravity: float) -> float:
+    """How long [s] somebody of a size over an adult's flies who goes so fast (3,) [m/s] and is to fly so far, and so far up [m]: as long as his speed takes, if he can."""
+    scale, pace = math.sqrt(size * 9.81 / gravity), max(float(np.linalg.norm(velocity * FLAT)), 1e-9)
+    usual = min(max(far / pace, min(airtime(velocity, size), FLIES[0]) * scale), FLIES[1] * scale)
+    return max(usual, apex_airtime(np.zeros(3), np.array([0.0, up, 0.0]), max(up, 0.0) + RISES * size, np.array([0.0, -gravity, 0.0])))
+
+
+def longer(rises: float, size: float, gravity: float) -> float:
+    """By what the push of somebody of a size over an adult's takes longer who leaves upward so fast [m/s]."""
+    return min(max(rises / (USUAL * math.sqrt(size * gravity / 9.81)), 1.0), MOST)
+
+
+def changes(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, now: bool = True) -> float:
+    """By how much of his speed somebody changes it who goes so fast (3,) [m/s] and leaps off the foot that stands to a place (3,), off a floor [m]; infinite where that foot does not send
+    him there. now: whether that moment is, or to come."""
+    size, pace = physique.size, max(float(np.linalg.norm(goes)), 1e-9)
+    scale, way = math.sqrt(size * 9.81 / gravity), (place - start.centre) * FLAT
+    up, pushed = float(place[1]) - floor - LOWER * size, 0.5 * PUSHES * scale
+    far = float(np.linalg.norm(way - pushed * (start.velocity * FLAT + goes) - TRAILS * goes))
+    time = flies(far, up, start.velocity, size, gravity)
+    lasts = longer(up / time + 0.5 * gravity * time, size, gravity)
+    pushed *= lasts
+    wanted = (way - pushed * start.velocity * FLAT) / (pushed + time + TRAILS)
+    along = float(wanted @ goes) / pace**2
+    aside = float(np.linalg.norm(wanted - along * goes)) / pace
+    if not LEAVES[not now] <= along <= LEAVES[2] or aside > ASIDE[not now]:
+        return math.inf
+    velocity, _ = sent(physique, start, wanted, floor, gravity, time, lasts)
+    missed = velocity - wanted
+    ahead = float(missed @ goes) / pace**2
+    return abs(along - 1.0) if abs(ahead) <= MISSES[0] and float(np.linalg.norm(missed - ahead * goes)) <= (MISSES[1] * pace if now else math.inf) else math.inf
+
+
+def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, finds: Callable[[np.ndarray], bool], steep: float = 0.0, hands: bool = False) -> tuple[bool, bool]:
+    """Whether somebody who walks so fast (3,) [m/s] is in the best moment to leap off the foot that stands to a place (3,), and whether a better one is to come, off this foot or off one of the
+    next. finds: whether a foot finds floor at a place (3,). steep: how the floor rises on his way [m/m]. hands: whether hands wait for it."""
+    assert start.single is not None
+    size, pace = physique.size, max(float(np.linalg.norm(goes)), 1e-9)
+    way, foot = goes / pace, start.feet[start.single, :3]
+    past = float((start.centre - foot) @ way)
+
+    def least(start: Start, past: float, floor: float = floor) -> float:
+        """The least change of all moments from so far past the foot [m] on."""
+        return min((changes(physique, _gone(start, far * way), goes, place, floor, gravity, False) for far in np.arange(0.0, UNTIL * size - past, EACH)), default=math.inf)
+    now, later = changes(physique, start, goes, place, floor, gravity), least(_gone(start, EACH * way), past + EACH)
+    best, other, stride, lands = math.inf, start, STRIDE[0] * size + STRIDE[1] * pace * math.sqrt(size), LANDS * size
+    for number in range(1, FEET + 1):
+        if not finds(foot + number * stride * way):
+            break
+        other = _stepped(_gone(other, (lands - past) * way) if number == 1 else other, stride, way)
+        best = min(best, least(other, lands, floor + number * stride * steep))
+    good = now < math.inf and now <= later + AS_GOOD[0] and now <= best + AS_GOOD[1][hands]
+    return good, min(later, best) < math.inf
+
+
+def _stepped(start: Start, far: float, way: np.ndarray) -> Start:
+    """The same start a step so far [m] on along a way (3,), over the other foot."""
+    assert start.single is not None
+    feet = start.feet.copy()
+    left = np.array([way[2], 0.0, -way[0]])
+    feet[1 - start.single, :3] = feet[start.single, :3] + far * way + 2.0 * float((start.centre - feet[start.single, :3]) @ left) * left
+    feet[1 - start.single, 3:] = feet[start.single, 3:]
+    velocity = start.velocity - 2.0 * float(start.velocity @ left) * left
+    return replace(_gone(start, far * way), feet=feet, feet_rates=np.zeros((2, 5)), single=1 - start.single, velocity=velocity)
+
+
+def _gone(start: Start, way: np.ndarray) -> Start:
+    """The same start a way (3,) [m] on."""
+    return replace(start, root=start.root + way, centre=start.centre + way)
