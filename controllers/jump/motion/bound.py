@@ -7,7 +7,7 @@ how fast he would leave off it at each of these moments is told as for who goes 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -77,18 +77,25 @@ def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarra
     way, foot = goes / pace, start.feet[start.single, :3]
     past = float((start.centre - foot) @ way)
 
-    def least(start: Start, past: float, floor: float = floor) -> float:
-        """The least change of all moments from so far past the foot [m] on."""
-        return min((changes(physique, _gone(start, far * way), goes, place, floor, gravity, False) for far in np.arange(0.0, UNTIL * size - past, EACH)), default=math.inf)
-    now, later = changes(physique, start, goes, place, floor, gravity), least(_gone(start, EACH * way), past + EACH)
-    best, other, stride, lands = math.inf, start, STRIDE[0] * size + STRIDE[1] * pace * math.sqrt(size), LANDS * size
-    for number in range(1, FEET + 1):
-        if not finds(foot + number * stride * way):
+    def to_come() -> Iterator[tuple[float, float]]:
+        """The change of each moment to come, and by how much less it may be: from where he is now off this foot, and then off the next ones."""
+        def passing(start: Start, past: float, floor: float, less: float) -> Iterator[tuple[float, float]]:
+            for far in np.arange(0.0, UNTIL * size - past, EACH):
+                yield changes(physique, _gone(start, far * way), goes, place, floor, gravity, False), less
+        yield from passing(_gone(start, EACH * way), past + EACH, floor, AS_GOOD[0])
+        other, stride, lands = start, STRIDE[0] * size + STRIDE[1] * pace * math.sqrt(size), LANDS * size
+        for number in range(1, FEET + 1):
+            if not finds(foot + number * stride * way):
+                return
+            other = _stepped(_gone(other, (lands - past) * way) if number == 1 else other, stride, way)
+            yield from passing(other, lands, floor + number * stride * steep, AS_GOOD[1][hands])
+    now, better = changes(physique, start, goes, place, floor, gravity), False
+    good = now < math.inf
+    for change, less in to_come():
+        better, good = better or change < math.inf, good and now <= change + less
+        if better and not good:  # more would say no more
             break
-        other = _stepped(_gone(other, (lands - past) * way) if number == 1 else other, stride, way)
-        best = min(best, least(other, lands, floor + number * stride * steep))
-    good = now < math.inf and now <= later + AS_GOOD[0] and now <= best + AS_GOOD[1][hands]
-    return good, min(later, best) < math.inf
+    return good, better
 
 
 def _stepped(start: Start, far: float, way: np.ndarray) -> Start:
