@@ -8,7 +8,7 @@ longer it was held. Who stands and turns meanwhile, or keeps facing, says in whi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,10 +18,11 @@ from gambol.controllers.contract import CharacterState, Leap
 from gambol.controllers.jump import PACE, SETS_FEET, SLOWLY, TOO_NEAR
 from gambol.controllers.navigation import floor_at, in_world, slope_at
 
-from .on_top import on_top, past_edge
+from .on_top import on_top
 from .run_up import AHEAD
 from .straight_ahead import UP
 from .wish import Wish, in_view
+from .within_reach import LOWER, Reaches, anywhere, stopped_at
 
 MOVING = 0.9
 """Faster than this [m/s] the jump goes on the way one goes."""
@@ -41,21 +42,10 @@ SWINGS = 3.0
 """How fast the heading turns in which to land [rad/s]."""
 FARTHEST = 1.4
 """How far from a standing body the ring may be, over how far it leaps over level ground: so far it may leap down."""
-BEYOND = 0.2
-"""On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
-ONTO, STEADY = 0.05, 0.02
-"""And on a box so far beyond what it reaches [m]: who aims farther is off later, as he looks for where he can land instead. There it lies on a grid so fine [m], lest another leap be asked, and
-looked for anew, with each millimetre that somebody still glides."""
-CLIMBS = 1.5
-"""Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
-OVER_EDGE = 0.86, 1.9
-"""And it stops so far past the edge of a box: this share of how far the body leaps over level ground, and so much less for each metre up [m]. From near by legs clear no more of a high one."""
 SLOPED = 2.0
 """On the move, by so much for each metre a metre that ground rises there [m]: uphill a foot sends nobody as far, nor as near, as on level ground."""
 NEAR = 0.12
 """A ring nearer than this [m] means straight up."""
-LOWER = 0.05
-"""Floor that is lower by more than this [m] may be reached from farther off."""
 SLACK, ROUND = (0.5, 0.3), 0.5
 """Who can't reach the ring lands at most so far from it [m], from a stand and on the move; and along an arc, of which one foot sends him farther round than the other."""
 AIRTIME, CHARGE, LONGEST = 0.42, 0.20, 0.60
@@ -81,15 +71,6 @@ RESTS, FALLING = 0.12, 0.1
 ELSEWHERE, TILTED = math.radians(60.0), 0.5
 """Who let go, waits for his feet, and tilts the stick anew so far that it counts, by more than the first [rad] off the way to the ring and off where he held it, wants to go there: the ring
 is given up."""
-
-Reaches = Callable[[float], float]
-"""About how far a standing body leaps [m], so far aside [rad] of the way it faces."""
-
-
-def anywhere(aside: float) -> float:
-    """What nobody knows of is no limit."""
-    return math.inf
-
 
 def _pace(state: CharacterState) -> float:
     """How fast somebody goes [m/s]."""
@@ -302,7 +283,7 @@ class Aim:
             turns = self.course if abs(float(state.velocity[1])) > ARC and _pace(state) > MOVING else None
             return Leap(None, heading=turns, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
-        x, z = (x, z) if self.moving else on_top(self._near((x, z), state, around, reaches), floor, around)
+        x, z = (x, z) if self.moving else on_top(stopped_at((x, z), self.heading, state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])
         steep = SLOPED * float(np.hypot(*slope_at(x, z, around, place[1] + LOWER))) if self.moving and len(around) else 0.0
         if self.moving and abs(float(state.velocity[1])) > ARC:  # he turns there as he flies, and goes on round it
@@ -318,24 +299,6 @@ class Aim:
               reaches: Reaches = anywhere) -> Leap | None:
         """The jump that is wanted now that the button was let go; None while the body still turns to it."""
         return None if self.aiming or self.waiting <= 0.0 or self._askew(state) and self.facing(state, around) is not None else self.target(state, around, gravity, longest, 0.0, reaches)
-
-    def _near(self, place: tuple[float, float], state: CharacterState, around: Sequence[Any], reaches: Reaches) -> tuple[float, float]:
-        """A place x, z [m], or where on the way there the ring stops."""
-        floor = float(state.floor)
-        x, z = (place[k] - float(state.ground[k]) for k in (0, 1))
-        aside = 0.0 if self.heading is None else math.atan2(x, z) - float(state.ground[2])  # who says no heading turns to the ring, and to one on something first
-        there = floor_at(*place, around, floor + UP)
-        far, up, reach = math.hypot(x, z), max(there - floor, 0.0), reaches(aside)
-        stops = reach - CLIMBS * up + (ONTO if up > LOWER else BEYOND)
-        if LOWER < up and reach < math.inf:
-            past = past_edge(place, (float(state.ground[0]), float(state.ground[1])), there, around)
-            stops = min(stops, far - max(past - max(OVER_EDGE[0] * reach - OVER_EDGE[1] * up, 0.0), 0.0))
-        share = stops / max(far, 1e-9)
-        if share >= 1.0 or there < floor - LOWER:
-            return place
-        near = float(state.ground[0]) + share * x, float(state.ground[1]) + share * z
-        near = near if up <= LOWER else (STEADY * round(near[0] / STEADY), STEADY * round(near[1] / STEADY))
-        return near if floor_at(*near, around, floor + UP) > there - LOWER else place  # else it is too far off for any leap, which is told
 
     def _askew(self, state: CharacterState) -> bool:
         """Whether a standing body does not face the ring."""
