@@ -26,8 +26,8 @@ SWINGS, FADES = (17.0, 20.0, 12.0), 2.0 * np.log(2.0) / np.e
 [rad/s] at least; which is at most so much of what it lacked over the half-life."""
 ARMS = 14.0
 """Arms are swung no faster than this [rad/s] before take-off, as recorded ones in leaps off one foot."""
-SPRINGING = 8.0
-"""And no faster than this [rad/s] by who springs off from a landing."""
+SPRINGING, WALKING = 8.0, 6.0
+"""And no faster than this [rad/s] by who springs off from a landing, and by who walks and leaps to a place: he pushes for so short a time that hands were pulled by up to 173 m/s²."""
 CLEARED, SOON = 12, 0.12
 """At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 HELD, RISES_ON = 13, 0.5
@@ -58,7 +58,7 @@ class Pushing(Airborne):
             keys[:off + 1, 3:] = keys[0, 3:] + share**2 * (3.0 - 2.0 * share) * (keys[off, 3:] - keys[0, 3:])
         swung = keys[:off + 1, 3:].reshape(off + 1, 2, 4)[..., :3]
         fastest = float((np.linalg.norm(np.diff(swung, axis=0), axis=-1) / np.maximum(np.diff(self.due[:off + 1]), 1e-9)[:, None]).max())
-        most = SPRINGING if start.low is not None else ARMS if start.runs else math.inf
+        most = SPRINGING if start.low is not None else WALKING if start.bound else ARMS if start.runs else math.inf
         share = min(most / max(fastest, 1e-9), 1.0)
         keys[:off, 3:] = keys[off, 3:] + share * (keys[:off, 3:] - keys[off, 3:])
         return keys
