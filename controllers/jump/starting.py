@@ -171,7 +171,6 @@ def off_under(physique: Physique, start: Start, leap: Leap | None, state: Charac
     if place.shape != (3,) or not np.isfinite(place).all() or not even(state, place, around):
         return start, False
     (level, slope), here, way = _ground(state, around), np.asarray(state.ground, float)[:2], goes(state)
-
     steep = float(slope @ way[[0, 2]]) / float(np.linalg.norm(way))
     if leap.slack > 0.0 and steep < DOWNHILL:
         return start, False

@@ -35,7 +35,7 @@ BACK = 0.25
 """He makes room for that who has so much of it behind him [m]."""
 EVEN, LEVEL = (0.25, 0.5, 0.75, 1.0, 1.25), 0.05
 """Who goes slowly leaps on over floor that is no higher or lower than the second [m] so far before him [m]."""
-ONTO, OTHER = np.arange(0.65, 1.26, 0.05), 0.05
+LANDS, OTHER = np.arange(0.65, 1.26, 0.05), 0.05
 """Who is held up before something and jumps lands at the first of these [m] ahead where there is room on what is higher or lower than his own floor by more than the second [m]."""
 RISES = 0.12
 """What is so much higher than the floor [m] a runner brakes before, who would step on it as he walks: who holds a leap leaps."""
@@ -121,7 +121,7 @@ def onto(state: CharacterState, way: Sequence[float], around: Sequence[Any]) -> 
     """Where x, z [m] from somebody who stands, held up before something on his way (2,), his ring lies at first: on what he stands before, or below the edge; None where
     there is no room, or the same floor as his own."""
     floor, goes = float(state.floor), math.hypot(*way)
-    for far in ONTO if goes > 0.0 else ():
+    for far in LANDS if goes > 0.0 else ():
         x, z = (float(far) * part / goes for part in way)
         there = np.asarray(state.ground[:2], float) + (x, z)
         high = floor_at(float(there[0]), float(there[1]), around, floor + UP)
