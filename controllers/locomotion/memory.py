@@ -72,25 +72,35 @@ def plain(settings: Settings) -> Settings:
 
 class Legs(NamedTuple):
     """What the step must know of body and library: joint numbers (hip: (2,), left and right;
-    head: (2,), neck and head; shoulder: (2,)), the height of standing heels and balls [m], the number of the rest primitive, and
+    head: (2,), neck and head; shoulder, elbow: (2,)), the height of standing heels and balls [m], the number of the rest primitive, and
     where its contact points are along the floor (4, 2), x, z in the ground frame [m]; and where heel, ball and toe's end of both feet of every
-    primitive are at phases of its cycle, paths (P, PATH, 6, 3), likewise."""
+    primitive are at phases of its cycle, paths (P, PATH, 6, 3), likewise. bent: (3, 2) [rad] how a runner's elbows are turned on the whole."""
 
     hip: np.ndarray
     chest: int
     neck: int
     shoulder: np.ndarray
+    elbow: np.ndarray
     height: float
     rest: int
     stance: np.ndarray
     paths: np.ndarray
+    bent: np.ndarray
 
 
 def legs_of(library: Library) -> Legs:
     """What the step must know of a library."""
     at = library.skeleton.index
+    elbow = np.array([at("LeftForeArm"), at("RightForeArm")])
     return Legs(np.array([at("LeftUpLeg"), at("RightUpLeg")]), at("Spine2"), at("Neck"),
-                np.array([at("LeftShoulder"), at("RightShoulder")]), contact_height(library.skeleton), library.rest, _stance(library), _paths(library))
+                np.array([at("LeftShoulder"), at("RightShoulder")]), elbow, contact_height(library.skeleton), library.rest, _stance(library), _paths(library), _bent(library, elbow))
+
+
+def _bent(library: Library, elbow: np.ndarray) -> np.ndarray:
+    """How joints are turned in the middle of its runs' cycles (3, 2) [rad]; at rest, if it has none."""
+    runs = library.family("run")
+    means = library.coefficients[runs if len(runs) else [library.rest], 0, :HIPS].reshape(max(len(runs), 1), -1, 3)
+    return np.ascontiguousarray(means.mean(0)[elbow].T, float)
 
 
 def _stance(library: Library) -> np.ndarray:
@@ -169,6 +179,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("looks", "i4"), ("look", "f4", 3),  # whether there is a place to look at, and which
         ("gaze", "f4", 2), ("gaze_rate", "f4", 2),  # how far the head turns and nods
         ("braked", "f4", 2),  # how far the trunk leans against its braking, and how fast
+        ("ran", "f4"), ("carried", "f4", 2),  # how lately it ran (0 … 1), how far its elbows are carried bent for it, and how fast that changes
     ], align=True)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..body import spring_kernel
 from ..compiled import kernel
+from .carried_arms import carry_arms
 from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command, stages
 from .control_space import SCALE
 from .first_stride import BEFORE, SHIFT, add_start, break_off, leans, leave_rest, shift_left, start_kernel
@@ -93,6 +94,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         add_idle(m, idle, fresh)
         add_start(m, start, fresh)
         sit_back(m, legs.neck, fresh, dt)
+        carry_arms(m, legs.elbow, legs.bent, fresh, dt)
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
         follow_command(m, dt)

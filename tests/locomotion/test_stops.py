@@ -60,6 +60,22 @@ def test_who_brakes_out_of_a_run_leans_against_it_and_stands_upright_again(locom
     assert (slow < stands - 2.0).all()
 
 
+def test_who_comes_out_of_a_run_keeps_both_elbows_bent_until_he_is_slow(locomotion):
+    """Recorded: 60° or more until as slow as 0.8 m/s; the blend stretched one to 17° at 1.1 m/s, the other, ahead, was level."""
+    wishes = np.zeros((5 * FPS, 12, 3))
+    for n in range(12):
+        wishes[:2 * FPS + 3 * n, n, 0] = 3.0
+    motion = play(locomotion, wishes)
+    at = motion.positions[..., [[locomotion.skeleton.index(side + joint) for joint in ("Arm", "ForeArm", "Hand")] for side in ("Left", "Right")], :]
+    upper, fore = at[..., 1, :] - at[..., 0, :], at[..., 2, :] - at[..., 1, :]
+    bent = np.degrees(np.arccos((upper * fore).sum(-1) / np.linalg.norm(upper, axis=-1) / np.linalg.norm(fore, axis=-1)))
+    ahead = np.gradient(motion.ground[:, :, 1], axis=0) * FPS
+    brisk = ahead > 1.2
+    brisk[:FPS] = False
+    assert bent[brisk].min() > 45.0
+    assert bent[-1].max() < 30.0
+
+
 def test_heads_lead_a_curve_no_farther_than_recorded_ones(locomotion):
     """Recorded spirals: 8° at the median at 0.9 to 1.4 rad/s, 12° in 90 of 100 moments."""
     wishes = np.zeros((6 * FPS, 2, 3))
