@@ -305,3 +305,17 @@ def test_nobody_walks_on_air_whatever_the_height_of_the_ledge(jump, locomotion, 
         off = off + 1 if aloft else 0
         assert off < 8
     assert float(state.floor) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("gives", (0.6, 1.0))
+def test_arms_come_to_a_softer_landing_by_and_by(jump, standing, gives):
+    """Elbows of who sinks less than usual snapped by 13° in the frame in which he touched down."""
+    start = jump.start_of(standing)
+    start = replace(start, centre=start.centre + [0.0, 1.0, 0.0], root=start.root + [0.0, 1.0, 0.0], velocity=np.array([0.5, -0.3, 0.0]))
+    made, _ = _fallen(jump.physique, start, None, (), jump.gravity, np.zeros(3), gives, None)
+    down = int(np.searchsorted(made.times, made.touch_down))
+    shown = made.local[down - 4:down + 8]
+    for side in ("Left", "Right"):
+        elbow = shown[:, jump.skeleton.index(side + "ForeArm")]
+        bent = np.degrees(np.arccos(np.clip(0.5 * (np.trace(elbow, axis1=-2, axis2=-1) - 1.0), -1.0, 1.0)))
+        assert np.abs(np.diff(bent) / np.diff(made.times[down - 4:down + 8])).max() < 420.0

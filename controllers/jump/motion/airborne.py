@@ -86,7 +86,8 @@ class Airborne:
         rows[:len(SETTLES)] += SETTLES[:, None] * (keys[-1] - way.keys[3 * BETWEEN, :LEGS])
         sunk = (goal[1] - float(self.sunk[0][:, 1].min())) / physique.size
         rows[:, 0] += LEANS[0] * max(sunk - LEANS[1], 0.0) * LEANT
-        rows += (1.0 - gives) * (carriage.STAND - rows)
+        calmer = (1.0 - gives) * np.minimum(np.arange(1.0, len(rows) + 1.0) / BETWEEN, 1.0)[:, None]  # but not at once: elbows snapped by 13° in a frame
+        rows += calmer * (carriage.STAND - rows)
         carried = landed if way.lands is None else self._carried(landed)
         self.carriage = carriage.keyed(np.concatenate([times, self.down + carried, [self.down + TIME]]),
                                        np.concatenate([keys, rows, [carriage.STAND]]), start.runs)

@@ -28,6 +28,9 @@ ARMS = 14.0
 """Arms are swung no faster than this [rad/s] before take-off, as recorded ones in leaps off one foot."""
 SPRINGING, WALKING = 8.0, 6.0
 """And no faster than this [rad/s] by who springs off from a landing, and by who walks and leaps to a place: he pushes for so short a time that hands were pulled by up to 173 m/s²."""
+LAGS, AT_MOST = 0.06, 0.4
+"""Arms of who leaps off one foot are as recorded ones at take-off so much later [s], or by this share of the flight: recorded swings slow down over a tenth of a second, and
+here the push, which is as short as his speed wants it, would end theirs within a frame."""
 CLEARED, SOON = 12, 0.12
 """At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 HELD, RISES_ON = 13, 0.5
@@ -56,6 +59,10 @@ class Pushing(Airborne):
         if start.low is not None:  # straight through: no time is left to swing them back first
             share = self.due[:off + 1, None] / self.due[off]
             keys[:off + 1, 3:] = keys[0, 3:] + share**2 * (3.0 - 2.0 * share) * (keys[off, 3:] - keys[0, 3:])
+        if start.runs:
+            since = np.array([0.0, 0.0, min(LAGS, AT_MOST * (self.events[3] - self.events[2])), 0.0])
+            late = np.interp(np.arange(len(keys)) / BETWEEN, np.arange(4), self.events + since)
+            keys[:, 3:] = hermite(late, keys[:, 3:], monotone(late, keys[:, 3:]), self.due)
         swung = keys[:off + 1, 3:].reshape(off + 1, 2, 4)[..., :3]
         fastest = float((np.linalg.norm(np.diff(swung, axis=0), axis=-1) / np.maximum(np.diff(self.due[:off + 1]), 1e-9)[:, None]).max())
         most = SPRINGING if start.low is not None else WALKING if start.bound else ARMS if start.runs else math.inf
