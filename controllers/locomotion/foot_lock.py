@@ -26,6 +26,7 @@ from .root_motion import as_runner, sooner
 from .short_leg import STRAINED, give_way
 from .memory import WALK
 from .swing import SWING, swing_kernel, swing_progress
+from .swing_height import lead_up, led_up
 from ..navigation.passing import STEP
 from .uneven_ground import RECOVERS, follow_ground, leave_level, lie_kernel, rise_ahead, touch
 
@@ -84,8 +85,15 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         m.brink = 0.0
     m.pace = min(m.pace + RECOVERS * dt, 1.0)
     m.runner += ((as_runner(m) if m.stairs > 0.0 else 0.0) - m.runner) * (1.0 - 2.0 ** (-dt / RUNNER_HALFLIFE))
-    for k in range(4):
-        take_hold(m, k, legs.height, sooner(m) * GRIP_RATE[0 if m.family == WALK and m.base[0] == m.base[1] else 1] * dt, dt)
+    even = m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0
+    for foot in range(2):
+        for k in range(2 * foot, 2 * foot + 2):
+            take_hold(m, k, legs.height, sooner(m) * GRIP_RATE[0 if m.family == WALK and m.base[0] == m.base[1] else 1] * dt)
+        clears = clearance + OVER * abs(m.base[foot] - m.left[foot])
+        if even and m.stairs <= 0.0 and led_up(m, foot, ahead):
+            lead_up(m, foot, ahead, legs.height, swings_over(m, foot, clears), dt)
+        else:
+            come_down(m, foot, legs.height, dt)
     for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
             _hold(m, foot, before, now, dt)
@@ -95,7 +103,6 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
             swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
         lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
     need = m.lower = 0.0
-    even = m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0
     lowered = m.pelvis if even else 0.0  # on stairs, whose feet reach far down, heels rise first
     for foot in range(2):
         for j in range(legs.hip[foot], legs.hip[foot] + 3):
@@ -136,7 +143,7 @@ def _lacks(hip, ankle, reach):
 
 
 @kernel
-def take_hold(m, k, height, step, dt):
+def take_hold(m, k, height, step):
     """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. step: how far a
     grip changes at most."""
     wanted = 1.0
@@ -156,8 +163,14 @@ def take_hold(m, k, height, step, dt):
         wanted = m.grip[k]
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
-    below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
-    m.raised[k], m.raised_rate[k] = spring_kernel(m.raised[k], m.raised_rate[k], below, LAND_HALFLIFE, dt)
+
+
+@kernel
+def come_down(m, foot, height, dt):
+    """Bring a foot's heel and ball to the floor as they grip it, else to the blend's height."""
+    for k in range(2 * foot, 2 * foot + 2):
+        below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
+        m.raised[k], m.raised_rate[k] = spring_kernel(m.raised[k], m.raised_rate[k], below, LAND_HALFLIFE, dt)
 
 
 @kernel
@@ -281,11 +294,17 @@ def at_rest(m, legs):
 
 
 @kernel
+def swings_over(m, foot, clearance):
+    """How high a foot is held over the floor in mid-swing [m]."""
+    return min(clearance + 0.4 * m.swing[foot], 0.06)
+
+
+@kernel
 def _swing_lift(m, foot, clearance, dt):
     """How high a foot is held over the floor [m]: over the stretch of the phase in which it swings,
     and the more the farther it has to go beyond what the blend does by itself."""
     wanted, progress = 0.0, swing_progress(m, foot)
     if progress < 1.0 and not m.settled:
-        wanted = min(clearance + 0.4 * m.swing[foot], 0.06) * math.sin(math.pi * progress)
+        wanted = swings_over(m, foot, clearance) * math.sin(math.pi * progress)
     m.lift[foot], m.lift_rate[foot] = spring_kernel(m.lift[foot], m.lift_rate[foot], wanted, LIFT_HALFLIFE, dt)
     return max(m.lift[foot], 0.0)

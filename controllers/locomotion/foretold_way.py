@@ -60,7 +60,7 @@ def foretell_way(m, body, foot, left, legs, ahead):
     will be.
 
     As the paths of the primitives have it at weights and along a way that lead evenly from now to then, and off it by as much as
-    it is now and will be then. The other foot stays, and turns about its ball as the blend's does once its heel is up.
+    it is now and will be then, most of which goes at first, as offsets do that fade. The other foot stays, and turns about its ball as the blend's does once its heel is up.
     """
     ground, now, end, at, there = ahead.vectors[0], ahead.now[0], ahead.now[1], ahead.now[2], ahead.now[3]
     strike, whole, paths = SWING[m.family] + 0.5 * foot, ahead.until[foot], legs.paths
@@ -90,9 +90,10 @@ def foretell_way(m, body, foot, left, legs, ahead):
         x = m.ground[0] + share * (goes[0] - m.ground[0]) + share * share * (ground[0] - goes[0])
         z = m.ground[1] + share * (goes[1] - m.ground[1]) + share * share * (ground[1] - goes[1])
         c, s = math.cos(heading), math.sin(heading)
+        gone = share * (2.0 - share)
         for p in range(3):
             for i in range(3):
-                at[p, i] += now[p, i] + share * (end[p, i] - now[p, i])
+                at[p, i] += now[p, i] + gone * (end[p, i] - now[p, i])
             ahead.way[foot, k, p, 0] = x + c * at[p, 0] + s * at[p, 2]
             ahead.way[foot, k, p, 1] = at[p, 1]
             ahead.way[foot, k, p, 2] = z - s * at[p, 0] + c * at[p, 2]

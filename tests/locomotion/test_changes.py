@@ -228,6 +228,16 @@ def test_toes_clear_the_floor_in_mid_swing(locomotion):
         assert toe[(progress > 0.35) & (progress < 0.65)].min() > contact_height(locomotion.skeleton) + 0.008
 
 
+@pytest.mark.parametrize("after", [(1.3, 1.2, 0), (0.7, 0, 0)])
+def test_no_foot_falls_onto_a_height_over_the_floor_as_a_run_becomes_a_walk(locomotion, after):
+    """The blend's foot goes under the floor for a while; held up only there, heels and balls stopped in mid-air at up to 175 m/s², and soles were slapped flat."""
+    motion, asked = changed(locomotion, (2.8, 0, 0), after)
+    high = motion.points[..., 1]
+    stopped, low = (high[2:] - 2.0 * high[1:-1] + high[:-2]) * FPS**2, (high[1:-1] > 0.03) & (high[1:-1] < 0.18)
+    worst = [np.where(low, stopped, 0.0)[frame:frame + 2 * FPS, n].max() for n, frame in enumerate(asked)]
+    assert max(worst) < 115.0 and np.median(worst) < 80.0
+
+
 @pytest.mark.parametrize("wish", [(0, 0, 0.45), (0, 0, -0.45), (0, 1.5, 0), (-0.6, 0, 0), (0, 0, 0)])
 def test_nobody_goes_on_running_who_does_not_ask_for_it(locomotion, wish):
     """At whatever moment of a run something slow is asked for, it is walked two seconds later."""

@@ -121,7 +121,7 @@ def test_a_ball_that_leaves_does_not_hold_on_again(locomotion, grip, label, fall
     memory = locomotion.start().memory.copy().reshape(1)
     memory["settled"], memory["phase"], memory["lent"] = 0, 0.45, lent
     memory["grip"], memory["row"][0, LABELS_AT + 3], memory["row_rate"][0, LABELS_AT + 3] = grip, label, falls
-    take_hold(memory[0], 3, locomotion.tables.legs.height, 25.0 / FPS, 1 / FPS)
+    take_hold(memory[0], 3, locomotion.tables.legs.height, 25.0 / FPS)
     assert memory["grip"][0, 3] <= np.float32(grip)
 
 
