@@ -305,3 +305,24 @@ def test_nobody_walks_on_air_whatever_the_height_of_the_ledge(jump, locomotion, 
         off = off + 1 if aloft else 0
         assert off < 8
     assert float(state.floor) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("high", [0.15, 0.3])
+@pytest.mark.parametrize("speed", [0.6, 10.0])
+def test_who_stands_on_what_is_taken_away_comes_down(jump, locomotion, high, speed):
+    """Where a step leads down, too: he hung in the air for good."""
+    someone = Supervisor({"locomotion": locomotion, "jump": jump})
+    state = someone.start((0.0, 0.0, 0.0), high)
+    for n in range(240):
+        state, _ = someone.step(state, Intent(around=(Box((speed * n / FPS, high / 2, 0.0), (2.0, high, 2.0)),)), 1 / FPS)
+    feet = contact_points(jump.skeleton, *forward_kinematics(jump.skeleton, state.pose.root, state.pose.rotations))
+    assert float(state.floor) == 0.0 and np.abs(feet[:, 1] - 0.02).max() < 0.01
+
+
+def test_who_stands_with_one_foot_over_an_edge_stays(jump, locomotion):
+    someone = Supervisor({"locomotion": locomotion, "jump": jump})
+    for x in (0.0, 0.95):
+        state = someone.start((x, 0.0, 0.0), 0.3)
+        for _ in range(120):
+            state, _ = someone.step(state, Intent(around=(Box((0.0, 0.15, 0.0), (2.0, 0.3, 2.0)),)), 1 / FPS)
+        assert state.memory.active == "locomotion" and float(state.floor) == 0.3
