@@ -57,10 +57,15 @@ class Asked:
     state: CharacterState
     onward: Any = None
 
+    def drifts(self, intent: Intent) -> bool:
+        """Whether it is to the same place, which moves."""
+        was, leap = self.intent.leap, intent.leap
+        return was is not None and leap is not None and was.near(leap) and not was.same(leap)
+
     def still(self, state: CharacterState, intent: Intent) -> bool:
-        """Whether the same is asked from the same place: of the same stance, where somebody moves."""
+        """Whether the same is asked from the same place: of the same stance, where somebody moves. What was refused is asked anew of a place that moved."""
         was, leap, before = self.intent.leap, intent.leap, self.state
-        if was is None or leap is None or not was.same(leap):
+        if was is None or leap is None or not (was.same(leap) if self.onward is None else was.near(leap)):
             return False
         if intent.around is not self.intent.around:
             here, place = state.ground[:2], leap.place
@@ -217,7 +222,7 @@ class Supervisor(Controller):
             try:
                 entered = self.parts[name].seek(own, intent, None if before is None else before.onward)
             except Unable as reason:
-                refused = str(reason)
+                refused = str(reason) or (refused if asked is not None and asked.name == name and asked.drifts(intent) else "")
                 first = (intent, own) if before is None else (before.intent, before.state)
                 asked = None if intent.leap is None else Asked(name, *first, reason.onward)
                 continue

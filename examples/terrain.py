@@ -18,7 +18,7 @@ RATE, CELL, REACH = 60, 0.25, 1.5
 
 
 def height(x, z):
-    """How high the ground lies [m]: yours comes from a mesh or a picture."""
+    """How high the ground lies [m], nowhere below 0: yours comes from a mesh or a picture."""
     return 0.6 + 0.6 * np.sin(0.5 * x) * np.cos(0.4 * z)
 
 

@@ -15,6 +15,9 @@ HARDEST = 1000.0
 """Nobody is struck harder [N·s]: as a car at walking pace would."""
 HIGHEST = 1e5
 """No floor is higher or deeper than this [m]: beyond it single precision loses millimetres, and numbers their sense."""
+DRIFTS = 0.3
+"""A leap to a place that moves is found out about on and on, until the place is so far [m] from where it was at first. Found out about anew whenever it moved,
+it never would be."""
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:
@@ -79,8 +82,22 @@ class Leap:
 
     def same(self, other: Leap | None) -> bool:
         """Whether another wish is this one."""
-        return (other is not None and (self.airtime, self.slack, self.heading, self.on, self.stays, self.along) == (other.airtime, other.slack, other.heading, other.on, other.stays, other.along)
-                and (self.place is None) == (other.place is None) and (self.place is None or other.place is None or np.array_equal(self.place, other.place)))
+        return self._off(other) == 0.0
+
+    def near(self, other: Leap | None) -> bool:
+        """Whether another wish is this one, to a place that may have moved a little meanwhile."""
+        return self._off(other) < DRIFTS
+
+    def _off(self, other: Leap | None) -> float:
+        """How far [m] another wish's place is from this one's; infinite where the wishes differ in anything else, or one is to no place."""
+        if other is None or (self.airtime, self.slack, self.heading, self.on, self.stays, self.along) != (other.airtime, other.slack, other.heading, other.on, other.stays, other.along):
+            return math.inf
+        if self.place is None or other.place is None:
+            return 0.0 if self.place is other.place else math.inf
+        if np.array_equal(self.place, other.place):
+            return 0.0
+        off = float(np.linalg.norm(self.place - other.place)) if self.place.shape == other.place.shape == (3,) else math.inf
+        return off if math.isfinite(off) else math.inf
 
 
 @dataclass(frozen=True)

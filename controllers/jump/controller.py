@@ -16,7 +16,7 @@ from ..navigation import STEP, floor_at
 from ..navigation.passing import drawn_in
 from .body import GRAVITY, Physique, Start, airtime_up, along, measures
 from .crouching import Crouching, begun, crouched
-from .motion import Carried, Plan, as_shown, between_kernel, carried, fall, over_nothing, steps_over, struck
+from .motion import STANDS, Carried, Plan, as_shown, between_kernel, carried, fall, hangs, over_nothing, steps_over, struck
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
@@ -132,12 +132,12 @@ class Jump(Reach, Controller):
         raise Refused(*found)
 
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
-        """The same, sought in pieces. onward: of the step before, where the same was asked. Refused until a plan is found, with why there is none as
+        """The same, sought in pieces. onward: of the step before, where the same was asked, or of a place near by. Refused until a plan is found, with why there is none as
         far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
-        seeking, steps, began = self._seeks(state, intent) if onward is None or onward.seeking is None else onward
+        seeking, steps, began, asked = self._seeks(state, intent) if onward is None or onward.seeking is None else onward
         assert seeking is not None
         steps += 1
-        found, onward = seeking.after(steps), Onward(seeking, steps, began)
+        found, onward = seeking.after(steps), Onward(seeking, steps, began, asked)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
         leap = intent.leap
@@ -151,14 +151,16 @@ class Jump(Reach, Controller):
         if isinstance(seeking.after(steps - 1), str):  # it was found just now: no step makes two plans
             raise Refused("", onward=onward)
         start, floor = self.placed(state, leap, intent.around)
-        found = self.again(found.arc.how, start, found.place, floor, leap.airtime, intent.around)
-        if found is None:  # he moved meanwhile
+        place = found.place if leap.place is None else found.place + (leap.place - asked)  # which may have moved meanwhile
+        found = self.again(found.arc.how, start, place, floor, leap.airtime, intent.around)
+        if found is None:  # he moved meanwhile, or it did
             raise Refused("", onward=self._seeks(state, intent))
         return found.made
 
     def _seeks(self, state: CharacterState, intent: Intent) -> Onward:
         """The beginning of seeking from a state."""
-        return Onward(Seeking(self._looked_for(state, intent, self._waits(state))), 0, np.array(state.pose.root, float))
+        place = None if intent.leap is None else intent.leap.place
+        return Onward(Seeking(self._looked_for(state, intent, self._waits(state))), 0, np.array(state.pose.root, float), place)
 
     def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.
@@ -353,13 +355,14 @@ class Jump(Reach, Controller):
 
     def _leapt(self, state: CharacterState, intent: Intent, leap: Leap) -> CharacterState:
         """The state at the beginning of a leap; where it can't be made yet, or at all, as it is, and with why. What was refused is not asked again."""
-        memory, same = state.memory, leap.same(state.memory.asked)
+        memory, same, near = state.memory, leap.same(state.memory.asked), leap.near(state.memory.asked)
         if same and memory.onward is None:
             return state
         try:
-            return replace(state, memory=self._begins(self.sought(state, intent, memory.onward if same else None), state, leap))
+            return replace(state, memory=self._begins(self.sought(state, intent, memory.onward if near else None), state, leap))
         except Refused as reason:
-            return replace(state, memory=replace(memory, refused=str(reason), asked=leap, onward=reason.onward))
+            why = str(reason) or (memory.refused if near and not same else "")  # of a place that moves it holds until more is known
+            return replace(state, memory=replace(memory, refused=why, asked=leap, onward=reason.onward))
 
     def _followed(self, state: CharacterState, intent: Intent) -> CharacterState:
         """The state of who comes down at the beginning of the leap that is to follow, or of a crouch if one is aimed at; as it is where there
@@ -403,10 +406,13 @@ class Jump(Reach, Controller):
         ahead, left = np.asarray(state.velocity, float)[[0, 2]] * 0.2
         c, s = np.cos(heading), np.sin(heading)
         x, z = x + s * ahead + c * left, z + c * ahead - s * left
-        if np.ndim(state.ground) != 1 or floor_at(x, z, intent.around) > float(state.floor) - 0.2 * self.physique.size:
+        if np.ndim(state.ground) != 1:
             return False
-        return (over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), self.physique.size)
-                or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
+        size, deep = self.physique.size, float(state.floor) - floor_at(x, z, intent.around)
+        if deep >= (STANDS - 0.02) * size and np.abs(state.velocity).max() < STILL and hangs(self.skeleton, state.pose, intent.around, size):
+            return True
+        return deep >= 0.2 * size and (over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), size)
+                                       or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
 
     def _waits(self, state: CharacterState) -> bool:
         """Whether it will be in a moment where it is now."""

@@ -23,7 +23,7 @@ from .kernel import LABELS_AT
 from .last_stride import BESIDE, OFF, STAYS
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .root_motion import as_runner, sooner
-from .short_leg import STRAINED, give_way
+from .short_leg import STRAINED, give_way, lacks_kernel, nearer_kernel
 from .memory import WALK
 from .swing import SWING, swing_kernel, swing_progress
 from .swing_height import lead_up, led_up
@@ -74,7 +74,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     ahead: of the blend's feet (`foothold`). tops, floor: of the ground (`uneven_ground`). before: (4, 2) where the blend's contact points were one step ago, in
     the world.
     """
-    ankle, now, lift = np.empty((2, 3)), np.empty((4, 2)), np.empty(2)
+    ankle, now, lift, length, firm = np.empty((2, 3)), np.empty((4, 2)), np.empty(2), np.empty(2), np.empty(2)
     on_floor(m, now)
     m.most = m.stairs = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
@@ -113,10 +113,10 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         _turn_foot(m, body, foot, hip + 2, legs.height, lift[foot], orientations, ankle[foot], dt, work)
         reach = (REACH - 0.001) * leg_length(body, hip)
         if stands:
-            m.lower = max(m.lower, min(lowered + _lacks(positions[hip], ankle[foot], reach - BENDS) + m.middle - m.level, DOWN))
-        lacks = _lacks(positions[hip], ankle[foot], reach) if even and m.grip[2 * foot] > 0.5 and ankle[foot, 2] > positions[hip, 2] else -1.0
-        give_way(m, body, foot, hip, reach, m.pelvis - lowered, positions, orientations, ankle[foot], dt, work)
-        need = max(need, lowered + max(lacks, _lacks(positions[hip], ankle[foot], reach)))
+            m.lower = max(m.lower, min(lowered + lacks_kernel(positions[hip], ankle[foot], reach - BENDS) + m.middle - m.level, DOWN))
+        lacks = lacks_kernel(positions[hip], ankle[foot], reach) if even and m.grip[2 * foot] > 0.5 and ankle[foot, 2] > positions[hip, 2] else -1.0
+        missing, length[foot], firm[foot] = give_way(m, body, foot, hip, reach, m.pelvis - lowered, positions, orientations, ankle[foot], dt, work)
+        need = max(need, lowered + max(lacks, missing))
     most = PELVIS_DROP[0] if even else PELVIS_DROP[1] + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
     need = min(need, most)
     drop, m.pelvis_rate = spring_kernel(m.pelvis, m.pelvis_rate, need, PELVIS_HALFLIFE, dt)
@@ -125,6 +125,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         hip = legs.hip[foot]
         for j in range(hip, hip + 3):
             positions[j, 1] -= m.pelvis - lowered
+        nearer_kernel(positions[hip], ankle[foot], length[foot], firm[foot])
         leg_kernel(positions, orientations, hip, ankle[foot], work)
         toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)
         toe_kernel(body, hip + 2, toes + lift[foot], positions, orientations, local, work)
@@ -133,13 +134,6 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         relative_kernel(orientations[hip + 1], orientations[hip + 2], local[hip + 2])
         if tops.shape[0] > 0:
             touch(m, body, hip, foot, legs.height, tops, floor, positions, orientations)
-
-
-@kernel
-def _lacks(hip, ankle, reach):
-    """How much lower a hip must be for its ankle to be within reach [m]; 1 where no depth is enough."""
-    flat = (hip[0] - ankle[0]) ** 2 + (hip[2] - ankle[2]) ** 2
-    return hip[1] - ankle[1] - math.sqrt(reach * reach - flat) if flat < reach * reach else 1.0
 
 
 @kernel

@@ -39,7 +39,8 @@ to it: this many times as long as a swing after it left."""
 @kernel
 def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, dt, work):
     """A leg too short lifts its heel about the ball, as far as the foot stands on it or has just left it; what then is
-    missing still, a foot that does not stand comes nearer. sinks: by how much the pelvis is lower than in positions [m]."""
+    missing still, a foot that does not stand comes nearer, once the pelvis is where it will be (`nearer_kernel`). sinks: by how much the
+    pelvis is lower than in positions [m]. How much lower than there it must be for the leg's sake [m], how long the leg is [m], and how firmly its foot stands."""
     a, grip = hip + 2, m.grip[2 * foot + 1]
     ball, axis, turned = work[0, 0], work[0, 1], work[1]
     for i in range(3):
@@ -72,10 +73,27 @@ def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, d
     lowered = math.sqrt(max(distance * distance + (2.0 * down + sinks) * sinks, 0.0))
     if swing_progress(m, foot) > LATE and lowered > reach + TORN and m.standing[2 * foot + 1] == 1:  # not even on its toes, and the pelvis lowered: let go before it tears
         m.torn[foot] = 1
+    for i in range(3):
+        turned[0, i] = ankle[i]
+    nearer_kernel(positions[hip], turned[0], length, firm)  # what does not stand asks less of the pelvis
+    return lacks_kernel(positions[hip], turned[0], reach), length, firm
+
+
+@kernel
+def nearer_kernel(hip, ankle, length, firm):
+    """An ankle that is farther from its hip than its leg is long comes nearer, as far as its foot does not stand firmly."""
+    distance = distance_kernel(hip, ankle)
     if distance > length:
         share = (length + firm * (distance - length)) / distance
         for i in range(3):
-            ankle[i] = positions[hip, i] + (ankle[i] - positions[hip, i]) * share
+            ankle[i] = hip[i] + (ankle[i] - hip[i]) * share
+
+
+@kernel
+def lacks_kernel(hip, ankle, reach):
+    """How much lower a hip must be for its ankle to be within reach [m]; 1 where no depth is enough."""
+    flat = (hip[0] - ankle[0]) ** 2 + (hip[2] - ankle[2]) ** 2
+    return hip[1] - ankle[1] - math.sqrt(reach * reach - flat) if flat < reach * reach else 1.0
 
 
 @kernel

@@ -214,6 +214,12 @@ def of_a_motion_file(option: str, file: Path | None, up: str | None, unit: str |
         raise Mistake(f"{'--up' if up is not None else '--unit'} goes with {option}, a .bvh or .amc file")
 
 
+def spared(out: Path, file: Path | None, option: str = "") -> None:
+    """Mistake where a result would take the place of the file that it is made of: nobody has that twice. option: which one names the file."""
+    if file is not None and out.exists() and file.exists() and out.samefile(file):
+        raise Mistake(f"{option} {file}: would be overwritten; give -o another name".lstrip())
+
+
 def known(file: Path) -> None:
     """Read an input log before anything takes time. LogError for one that can't be read."""
     from ..session import read

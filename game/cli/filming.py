@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from .base import Library, Mistake, Preset, Quality, Unit, Up, app, cores, learn, of_a_motion_file, person_of, plainly, progress_bar, rate_of, reading_of, say, say_doubts, say_refused
+from .base import Library, Mistake, Preset, Quality, Unit, Up, app, cores, learn, of_a_motion_file, person_of, plainly, progress_bar, rate_of, reading_of, say, say_doubts, say_refused, spared
 from .film_jobs import Job, at_once, count_of, frames, jobs_of, on_cluster
 
 
@@ -121,6 +121,7 @@ def track(footage: Annotated[Path, typer.Argument(metavar="DIR", help="A folder 
     from ..studio import error_of, followed, late, overlaid
 
     of_a_motion_file("--start", start, up, unit)
+    spared(out, start, "--start")
     film = read_footage(footage)
     if film.frames < 2:
         raise Mistake(f"{footage}: holds one frame; a track begins with two")

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .base import Library, Mistake, Unit, Up, Wearing, app, known, learn, of_a_motion_file, person_of, plainly, progress_bar, rate_of, reading_of, replayed, say, say_doubts, say_refused
+from .base import Library, Mistake, Unit, Up, Wearing, app, known, learn, of_a_motion_file, person_of, plainly, progress_bar, rate_of, reading_of, replayed, say, say_doubts, say_refused, spared
 
 
 @app.command()
@@ -28,6 +28,7 @@ def export(what: Annotated[str, typer.Argument(help="A shipped scenario, a .toml
     if actor is not None and onto is None:
         raise Mistake("--actor: says whose motion goes --onto a file; without it everybody's is written")
     of_a_motion_file("--onto", onto, up, unit)
+    spared(Path(out), character, "--character")
     rig = _rig(onto, out, up, unit) if onto is not None else None
     if not what.lower().endswith(SUFFIX):
         from ..scenario import scenario as scenarios
@@ -54,8 +55,7 @@ def _rig(onto: Path, out: Path, up: str | None, unit: str | None) -> Any:
 
     rig = rig_in(onto, reading_of(up, unit, onto if suffix_onto(onto) == ".bvh" else None))
     output_file(out, suffix_onto(onto))
-    if out.exists() and out.samefile(onto):
-        raise Mistake(f"--onto {onto}: would be overwritten; give -o another name")
+    spared(out, onto, "--onto")
     return rig
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from . import live
-from .base import Mistake, Unit, Up, app, learn, of_a_motion_file, plainly, progress_bar, reading_of, say
+from .base import Mistake, Unit, Up, app, learn, of_a_motion_file, plainly, progress_bar, reading_of, say, spared
 from .live import SUFFIX, write_take
 from .play import watch
 
@@ -68,7 +68,10 @@ def reconstruct(clip: Annotated[Path | None, typer.Argument(help="A BVH or AMC f
     else:
         from ..output import checked
 
+        spared(out, clip)
         checked(out)
+        if stream is not None and out.exists():
+            raise Mistake(f"{out}: is there already, and nobody does again what a stream was recorded of; name another file")
     if method is not None:
         _known(method)
         _told_turns(method, clip is None or heard_again or turns)

@@ -89,6 +89,8 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["{clip}", "--points", "lwrist,lwrist", "-o", "o.bvh"], "given twice"),
     (["{clip}", "--method", "magic", "--database", "{database}", "-o", "o.bvh"], "no such method; choose from trackers, ours"),
     (["{clip}", "-o", "o.fbx"], ".bvh or .glb"),
+    (["{clip}", "-o", "{clip}"], "would be overwritten; give -o another name"),
+    (["--stream", "osc", "-o", "{clip}"], "is there already, and nobody does again what a stream was recorded of; name another file"),
     (["none.bvh", "-o", "o.bvh"], "none.bvh"),
     (["{words}", "-o", "o.bvh"], "words.bvh"),
     (["{legless}", "-o", "o.bvh"], "legless.bvh: LeftUpLeg has no length: LeftLeg is where it is"),

@@ -123,6 +123,9 @@ def test_what_cannot_be_tracked_is_told_in_a_line(footage, tmp_path):
     one_line(run(footage.path, "-o", out, "--person", "Bob"), "shows no Bob")
     one_line(run(footage.path, "-o", tmp_path / "a.txt"), "a.txt")
     one_line(run(footage.path, "-o", out, "--start", tmp_path / "no.bvh"), "no.bvh")
+    (tmp_path / "begun.bvh").write_text("kept")
+    one_line(run(footage.path, "-o", tmp_path / "begun.bvh", "--start", tmp_path / "begun.bvh"), "would be overwritten")
+    assert (tmp_path / "begun.bvh").read_text() == "kept"
     one_line(run(footage.path, "-o", out, "--overlay", tmp_path / "film.avi"), "film.avi")
     broken = copied(footage, tmp_path / "one")
     (broken / "truth.npz").write_bytes(b"PK")

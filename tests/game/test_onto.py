@@ -118,7 +118,8 @@ def test_the_command_moves_a_file_or_says_why_not(tmp_path, monkeypatch):
     tree = at_frame(tmp_path / "out.glb", 0)
     assert abs(tree.world[tree.names.index("pelvis"), 0, 3] - 3.0) < 0.1, "B's motion"
     assert described(tmp_path / "out.glb")["animations"][0]["name"] == "B"
-    for words, told in ((("-o", "me.glb", "--onto", "me.glb"), "would be overwritten"), (("-o", "o.bvh", "--onto", "me.glb"), "ends in .glb"),
+    for words, told in ((("-o", "me.glb", "--onto", "me.glb"), "would be overwritten"), (("-o", "me.glb", "--character", "me.glb"), "would be overwritten"),
+                        (("-o", "o.bvh", "--onto", "me.glb"), "ends in .glb"),
                         (("-o", "o.glb", "--onto", "go.toml"), "no rig is read from it"), (("-o", "o.glb", "--onto", "me.glb", "--actor", "C"), "there are A, B"),
                         (("-o", "o.glb", "--actor", "A"), "--onto")):
         code, said = export(*words)

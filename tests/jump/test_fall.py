@@ -319,3 +319,24 @@ def test_arms_come_to_a_softer_landing_by_and_by(jump, standing, gives):
         elbow = shown[:, jump.skeleton.index(side + "ForeArm")]
         bent = np.degrees(np.arccos(np.clip(0.5 * (np.trace(elbow, axis1=-2, axis2=-1) - 1.0), -1.0, 1.0)))
         assert np.abs(np.diff(bent) / np.diff(made.times[down - 4:down + 8])).max() < 420.0
+
+
+@pytest.mark.parametrize("high", [0.15, 0.3])
+@pytest.mark.parametrize("speed", [0.6, 10.0])
+def test_who_stands_on_what_is_taken_away_comes_down(jump, locomotion, high, speed):
+    """Where a step leads down, too: he hung in the air for good."""
+    someone = Supervisor({"locomotion": locomotion, "jump": jump})
+    state = someone.start((0.0, 0.0, 0.0), high)
+    for n in range(240):
+        state, _ = someone.step(state, Intent(around=(Box((speed * n / FPS, high / 2, 0.0), (2.0, high, 2.0)),)), 1 / FPS)
+    feet = contact_points(jump.skeleton, *forward_kinematics(jump.skeleton, state.pose.root, state.pose.rotations))
+    assert float(state.floor) == 0.0 and np.abs(feet[:, 1] - 0.02).max() < 0.01
+
+
+def test_who_stands_with_one_foot_over_an_edge_stays(jump, locomotion):
+    someone = Supervisor({"locomotion": locomotion, "jump": jump})
+    for x in (0.0, 0.95):
+        state = someone.start((x, 0.0, 0.0), 0.3)
+        for _ in range(120):
+            state, _ = someone.step(state, Intent(around=(Box((0.0, 0.15, 0.0), (2.0, 0.3, 2.0)),)), 1 / FPS)
+        assert state.memory.active == "locomotion" and float(state.floor) == 0.3

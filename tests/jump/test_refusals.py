@@ -62,6 +62,8 @@ def test_what_is_no_place_can_not_be_surveyed(jump, standing, place):
             ask(start, (0.0, 0.0, 1.0), np.nan)
         with pytest.raises(ValueError, match="the airtime must be"):
             ask(start, (0.0, 0.0, 1.0), 0.0, np.nan)
+        with pytest.raises(ValueError, match=r"looked for from jump\.start_of\(state\); got a CharacterState"):
+            ask(standing, (0.0, 0.0, 1.0), 0.0)
     assert jump.survey(start, [0.0, 0.0, 1.0], 0)[1] == "", "a list is a place, too"
 
 

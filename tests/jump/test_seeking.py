@@ -72,3 +72,30 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
     for then in states[4:]:  # from where somebody went back to
         again, _ = someone.step(again, intent, 1 / 60)
         assert again.refused == then.refused and np.array_equal(again.pose.rotations, then.pose.rotations)
+
+
+@pytest.mark.parametrize("crouches", [False, True])
+@pytest.mark.parametrize("speed", [1e-4, 0.1, 0.5])
+def test_a_place_that_moves_is_leapt_to_where_it_is_then(someone, monkeypatch, speed, crouches):
+    """It was sought anew in each step, so nobody ever leapt to it, nor was told why."""
+    state, plans, plan, top = someone.start(), [], reach.plan, 0.4
+    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    for n in range(60 * (1 + crouches)):
+        place = np.array([0.0, top, 1.3 + speed * (n / 60 - crouches)])
+        things, leap = (Box((0.0, top / 2, place[2]), (1.0, top, 1.0)),), Leap(place)
+        state, _ = someone.step(state, Intent(aim=leap, around=things) if crouches and n < 60 else Intent(leap=leap, around=things), 1 / 60)
+        if isinstance(state.memory.memory, Jumping):
+            break
+        assert len(plans) <= 1
+        plans.clear()
+    assert n < 60 * crouches + 30, "it leaps"
+    lands = state.memory.memory.plan.feet[:, [0, 2]].mean(0)
+    assert np.hypot(*(lands - place[[0, 2]])) < 0.1
+
+
+def test_who_is_refused_a_place_that_moves_is_told_why_all_along(someone):
+    state, told = someone.start(), []
+    for n in range(60):
+        state, _ = someone.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 5.0 + 0.001 * n]))), 1 / 60)
+        told.append(state.memory.refused)
+    assert all(why.startswith("too far") for why in told[20:])

@@ -55,3 +55,32 @@ def test_a_slope_is_no_step_however_long_the_stride():
     assert abs(steps_kernel(one, 0, np.array([-0.35, 0.0, 0.0]), 0.0, stride)) < 0.01, "nor is the floor that a slope leads down to"
     one.tilt[1, 1] = 0.0
     assert steps_kernel(one, 0, np.array([-0.35, 0.0, 0.0]), 0.0, stride) == pytest.approx(-0.35), "but a box's edge is"
+
+
+def hills(x, z):
+    """How high hills are at a place [m], and how they rise there (2,)."""
+    rise = np.array([0.3 * np.cos(0.5 * x) * np.cos(0.4 * z), -0.24 * np.sin(0.5 * x) * np.sin(0.4 * z)])
+    return 0.6 + 0.6 * np.sin(0.5 * x) * np.cos(0.4 * z), rise
+
+
+def ramps(x, z):
+    """The hills about a place, as ramps of 25 cm."""
+    made = []
+    for a in 0.25 * (round(4.0 * x) + np.arange(-6, 7)):
+        for b in 0.25 * (round(4.0 * z) + np.arange(-6, 7)):
+            high, rise = hills(a, b)
+            made.append(SimpleNamespace(centre=(a, 0.5 * high, b), size=(0.25, high, 0.25), heading=float(np.arctan2(*rise)), slope=float(np.hypot(*rise))))
+    return tuple(made)
+
+
+def test_a_foot_that_lets_go_on_a_hill_is_not_pulled_up_by_as_much_as_the_pelvis_was_lowered(locomotion):
+    """It was, within a frame, by 3.7 cm, and its knee whipped by 6.5 m/s."""
+    state, knees, cell = locomotion.start((0.0, 0.0, 0.3), float(hills(0.0, 0.0)[0])), [], None
+    bones = [locomotion.skeleton.index(name) for name in ("LeftLeg", "RightLeg")]
+    for k in range(645):
+        if cell != (cell := tuple(np.round(4.0 * state.ground[:2]))):
+            around = ramps(*state.ground[:2])
+        goes = np.array([1.2, 0.15, 0.0]) * (k % 240 < 120)
+        state, pose = locomotion.step(state, Intent(goes, around=around), 1 / FPS)
+        knees.append(forward_kinematics(locomotion.skeleton, pose.root, pose.rotations)[0][bones])
+    assert FPS * np.linalg.norm(np.diff(knees, 2, axis=0), axis=-1).max() < 5.5

@@ -28,7 +28,12 @@ def over_nothing(skeleton: Skeleton, pose: Pose, contacts: np.ndarray, around: S
     feet reach for what lies lower, and stand once they are there. size: of the body, over a standard one's."""
     stands = np.asarray(contacts, bool).reshape(2, 2).any(1)
     feet = _feet(skeleton, pose)
-    return bool((stands & (_heights(feet, around, size, floor) > STANDS * size).all(1) & _void(feet, around, floor, size)).any())
+    return bool((stands & (_heights(feet, around, size) > STANDS * size).all(1) & _void(feet, around, floor, size)).any())
+
+
+def hangs(skeleton: Skeleton, pose: Pose, around: Sequence[Any], size: float = 1.0) -> bool:
+    """Whether nothing lies right under the soles of somebody who stands still: what was there is gone. size: of the body, over a standard one's."""
+    return bool((_heights(_feet(skeleton, pose), around, size) > STANDS * size).all())
 
 
 def steps_over(physique: Physique, start: Start, pose: Pose, around: Sequence[Any], floor: float, gravity: np.ndarray) -> bool:
@@ -39,7 +44,7 @@ def steps_over(physique: Physique, start: Start, pose: Pose, around: Sequence[An
     sunk = feet[..., 1].max(1) < floor + physique.tables.sole - SUNK * size
     if (sunk & void).any():
         return True
-    if (_heights(feet, around, size, floor) < TOUCHES * size).any():
+    if (_heights(feet, around, size) < TOUCHES * size).any():
         return False
     g, drop = -float(gravity[1]), float(start.centre[1]) - floor - measures(physique).touch(0.0)
     rise = float(start.velocity[1])
@@ -55,7 +60,7 @@ def _feet(skeleton: Skeleton, pose: Pose) -> np.ndarray:
     return contact_points(skeleton, *forward_kinematics(skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float))).reshape(2, 2, 3)
 
 
-def _heights(feet: np.ndarray, around: Sequence[Any], size: float, floor: float) -> np.ndarray:
+def _heights(feet: np.ndarray, around: Sequence[Any], size: float) -> np.ndarray:
     """How high (2, 2) [m] heels and balls are over what lies under them."""
     return np.array([[y - floor_at(x, z, around, y + STANDS * size) for x, y, z in foot] for foot in feet])
 

@@ -14,7 +14,7 @@ from ...navigation import floor_at, gap, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, path
 from ..prior import Prior
-from .feasibility import HARD, PACE, fault, meant
+from .feasibility import HARD, PACE, begins, fault, meant
 from .seeking import PATH, Pieces, whole
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
@@ -162,8 +162,8 @@ class Arcs:
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                around: Sequence[Any] = (), heights: Sequence[float] = HEIGHTS) -> tuple[Path, str]:
         """The path to a place (3,) off a floor [m], and why it can't be gone, if so: a look at the place, then `arcs`; nothing is planned. Refused for what is no
-        place, ValueError for what is no floor."""
-        return whole(self.surveyed(start, meant(place, airtime), float(level(floor)), airtime, around, heights))
+        place, ValueError for what is no floor or no start."""
+        return whole(self.surveyed(begins(start), meant(place, airtime), float(level(floor)), airtime, around, heights))
 
     def surveyed(self, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any],
                   heights: Sequence[float]) -> Pieces[tuple[Path, str]]:

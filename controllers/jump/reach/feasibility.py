@@ -10,7 +10,7 @@ import numpy as np
 from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ...contract import Unable
 from ...navigation import gap
-from ..body import FLAT, TURNED, Physique, along, measures, carriage, turns
+from ..body import FLAT, TURNED, Physique, Start, along, measures, carriage, turns
 from ..motion import SPINS, Path, Plan, rolls
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
@@ -79,6 +79,13 @@ def meant(place: Any, airtime: float | None = None) -> np.ndarray:
     if airtime is not None and not 0.05 <= airtime <= 10.0:
         raise Refused(f"the airtime must be within 0.05 … 10 s, got {airtime!r}")
     return numbers
+
+
+def begins(start: Any) -> Start:
+    """From where a leap is looked for. ValueError for what is none, as a state is."""
+    if not isinstance(start, Start):
+        raise ValueError(f"a leap is looked for from jump.start_of(state); got a {type(start).__name__}")
+    return start
 
 
 def too_weak(physique: Physique, usual: Path, longest: float) -> str:

@@ -16,7 +16,7 @@ from ..motion import Plan, rolled, rolls, room
 from ..planner import plan
 from ..prior import Prior
 from .arcs import HEIGHTS, Arc, Arcs, How, following
-from .feasibility import STEEP, meant, stopped, wrong
+from .feasibility import STEEP, begins, meant, stopped, wrong
 from .seeking import PLAN, Pieces, counted, weighed, whole
 from .sweep import Touch, touch
 
@@ -155,8 +155,8 @@ class Reach(Arcs):
         it lies lower, or from one that takes no effort: where it stands, or where a walk or run would carry the body; to `GRID`, however far the other is. None if
         none of those can be reached, as in the midst of a stride. It is looked for along arcs of the usual height alone: who would have to fly higher to get
         farther is offered a nearer one.
-        Refused for what is no place, ValueError for what is no floor."""
-        place, floor = meant(place, airtime), float(level(floor))
+        Refused for what is no place, ValueError for what is no floor or no start."""
+        start, place, floor = begins(start), meant(place, airtime), float(level(floor))
         if self.attempt(start, place, floor, airtime, around)[0] is not None:
             return place.copy()
         return whole(self.nearby(start, place, floor, airtime, around))[0]
