@@ -81,8 +81,8 @@ def test_who_lets_go_of_the_stick_before_a_box_and_taps_hops_where_he_stands(som
 
 
 def test_who_waits_to_leap_and_tilts_the_stick_elsewhere_goes_there_at_once(somebody):
-    """Before a box he goes back first. Who holds the stick on, or tilts it the way of the ring, still leaps; and nobody who thought better of it is told why he can't leap."""
-    start, tap = (0.0, 0.6, 0.0, 0.0), ((2.5, Wish(move=AHEAD)), (0.1, Wish(move=AHEAD, jump=True)))
+    """Who stands too near to a box goes back first. Who holds the stick on, or tilts it the way of the ring, still leaps; and nobody who thought better of it is told why he can't leap."""
+    start, tap = (0.0, 1.8, 0.0, 0.0), ((0.5, Wish()), (0.1, Wish(move=AHEAD, jump=True)))
     away = played(somebody, (BOX,), start, *tap, (0.1, Wish()), (0.9, Wish(move=RIGHT)))
     assert away[-55].players[0].aim.wants and not away[-45].players[0].aim.wants
     assert all(state.active == "locomotion" for state in states(away)[-40:]) and states(away)[-1].ground[0] < -0.3

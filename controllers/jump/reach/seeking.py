@@ -98,8 +98,10 @@ def _sought(known: tuple[Any, ...]) -> Seeking[Any]:
 
 
 class Onward(NamedTuple):
-    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, after how many steps, and where (3,) [m] his pelvis was as he began."""
+    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, after how many steps, where (3,) [m] his pelvis was as he began, and
+    whether that was for the second time."""
 
     seeking: Seeking[Any] | None
     steps: int = 0
     began: Any = None
+    anew: bool = False
