@@ -111,7 +111,9 @@ class CharacterState:
     @property
     def seeks(self) -> bool:
         """Whether it is still found out how what was asked last can be done."""
-        return isinstance(self.memory, Duty) and self.memory.asked is not None and self.memory.asked.onward is not None
+        if not isinstance(self.memory, Duty):
+            return False
+        return any(getattr(asked, "onward", None) is not None for asked in (self.memory.asked, self.memory.memory))
 
 
 def _batch(state: CharacterState) -> tuple[int, ...]:

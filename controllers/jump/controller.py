@@ -134,16 +134,16 @@ class Jump(Reach, Controller):
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
         """The same, sought in pieces. onward: of the step before, where the same was asked, or of a place near by. Refused until a plan is found, with why there is none as
         far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
-        seeking, steps, began, asked = self._seeks(state, intent) if onward is None or onward.seeking is None else onward
+        seeking, steps, began, asked, anew = self._seeks(state, intent) if onward is None or onward.seeking is None else onward
         assert seeking is not None
         steps += 1
-        found, onward = seeking.after(steps), Onward(seeking, steps, began, asked)
+        found, onward = seeking.after(steps), Onward(seeking, steps, began, asked, anew)
         if isinstance(found, str):
             raise Refused(found, onward=onward)
         leap = intent.leap
         if not isinstance(found, Found):
-            if steps > 1 and float(np.linalg.norm(state.pose.root - began)) > ELSEWHERE:
-                raise Refused("", onward=self._seeks(state, intent))
+            if steps > 1 and not anew and float(np.linalg.norm(state.pose.root - began)) > ELSEWHERE:
+                raise Refused("", onward=self._seeks(state, intent)._replace(anew=True))
             raise Refused(*found, onward=Onward(None) if self.placed(state, leap, intent.around)[0].bound else None)  # the next moment may do
         assert leap is not None  # or nothing would have been found
         if steps == 1:

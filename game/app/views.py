@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from gambol.controllers.jump import HARD, PACE
 from gambol.controllers.navigation import gap
 
 from ..camera import seen_past
-from ..explain import AT_ONCE, Preview, broken, explained, ghosts, led, pointed, preview, stepping
+from ..explain import AT_ONCE, NO, Preview, broken, explained, ghosts, led, pointed, preview, stepping
+from ..input import Aim
 from ..scene import Camera, Figure, Overlays, Scene
 from ..session import Log, SessionState, replay, strayed
 from ..world import RATE, figures
@@ -48,14 +50,22 @@ def scenes(moment: SessionState, fraction: float, cameras: Sequence[Camera], ove
     people = stepping(led(pointed(people, before, after, fraction, overlays), after, overlays, len(moment.players)), after, overlays)
     people += ghosts(aimed, people, after) if overlays.jump else ()
     text = tuple(text) or ((),) * len(cameras)
-    text = tuple((*lines, *broken(seen.told)) if seen is not None and seen.fault else lines
-                 for lines, seen in zip(text, aimed, strict=True))
+    text = tuple((*lines, *broken(_told(player.aim, seen))) if seen is not None and seen.fault else lines
+                 for lines, seen, player in zip(text, aimed, moment.players, strict=True))
     held = _held(moment)
     def seen(people: tuple[Figure, ...], i: int, camera: Camera) -> tuple[Figure, ...]:
         return people if moment.players[i].camera.flown else seen_past(people, camera, (i, *held))
     return tuple(Scene(camera, _through(seen(people, i, camera), moment), moment.after.props, overlays, lines,
                        part=(i * width, 0.0, width, 1.0))
                  for i, (camera, lines) in enumerate(zip(cameras, text, strict=True)))
+
+
+def _told(aim: Aim, seen: Preview) -> str:
+    """What somebody is told of a jump as he aims. Who has let go is refused only once nothing comes of it, and then told; nor does who moves hear of the pace of each moment: he chooses among his
+    next footfalls, and has another pace by then."""
+    if not aim.aiming and seen.told.startswith(NO) or aim.moving and seen.fault.startswith((*PACE, HARD)):
+        return ""
+    return seen.told
 
 
 def _through(people: tuple[Figure, ...], moment: SessionState) -> tuple[Figure, ...]:

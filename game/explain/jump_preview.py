@@ -34,6 +34,8 @@ CARRIED = 0.75
 """The ring of who goes slowly lies where he is in so long [s]; of who goes faster, nearer and nearer to where that of a runner lies."""
 BESIDE = 1.2
 """What is farther from a runner's arc [m] is nothing that he would touch."""
+NO = "no jump"
+"""So begins what is told of jumps that can't be made."""
 HITS = "would hit"
 """What is said of jumps in which something is touched."""
 
@@ -84,13 +86,13 @@ class Preview:
         beyond, reach = (float(np.linalg.norm(way[[0, 2]])) for way in (self.place - self.nearest, self.nearest - self.stand))
         if self.fault.startswith("too far:") and beyond > 0.05:
             return f"{beyond:.1f} m farther than this body can jump"
-        return f"{self.fault}; it can jump {reach:.1f} m that way"
+        return f"{self.fault}; " + (f"it can jump {reach:.1f} m that way" if reach > ALIKE else "it can't jump that way")
 
     @property
     def told(self) -> str:
         """What somebody who aims is told: that it can't be made, or that it leads to the nearest place instead; "" if it can."""
         if self.nearest is None or not self.fault.startswith("too far:") or not np.linalg.norm(self.place - self.nearest) <= self.slack:
-            return self.fault and f"no jump: {self.why}"
+            return self.fault and f"{NO}: {self.why}"
         return f"{self.why}: it lands in the green ring"
 
 

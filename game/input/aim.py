@@ -34,8 +34,12 @@ ARC, BENDS, BENT = 0.1, 0.26, 0.05
 who turns by more than the third [rad] as he waits for his footfall."""
 STANDS = 0.2
 """Who still walks faster than this [m/s] as he lets go of a ring at which he aimed from a stand comes to rest before it: it stays where it is."""
+SLOWED = 0.6
+"""Who let go of a ring on the move and has become slower than this [m/s], as before a box, leaps as one who stands, once he can."""
+HITS = "would hit"
+"""Why somebody can't leap from where he stands, but may from farther off."""
 RESTED = 0.03
-"""And who is faster than this [m/s] is not refused yet for his pace: once he rests he may leap after all."""
+"""And who is faster than this [m/s] is not refused yet: once he rests he may leap after all."""
 PUSH = 1.5
 """How fast a stick pushes the ring [m/s]."""
 SWINGS = 3.0
@@ -104,7 +108,7 @@ class Aim:
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
     skips: he went slowly enough for that as he let go. stick: where (2,) in the world it was held as the button was let go, nowhere since it came to rest.
-    led: for so long [s] the stick, which led him to what holds him up, pushes a ring that lies ahead already no farther.
+    led: for so long [s] the stick, which led him to what holds him up, pushes a ring that lies ahead already no farther. backs: he found that he would hit what he stands before, and goes back from it.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -122,6 +126,7 @@ class Aim:
     skips: bool = False
     stick: tuple[float, float] = (0.0, 0.0)
     led: float = 0.0
+    backs: bool = False
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf, even: bool = False, now: CharacterState | None = None, ahead: tuple[float, float] | None = None) -> Aim:
@@ -163,10 +168,13 @@ class Aim:
             offset = _ring(state)
             return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
         goes = _pace(now)
-        slows = not self.moving and goes > RESTED and state.refused.startswith(PACE)  # once he rests he is asked again
+        hits = not self.moving and HITS in state.refused
+        slows = not self.moving and goes > RESTED and (hits or state.refused.startswith(PACE))  # once he rests he is asked again
+        if hits and not slows and not self.backs and math.hypot(*told.offset) >= NEAR:
+            return replace(self, backs=True, waiting=PATIENCE)
         if slows and goes > MOVING and state.refused.startswith(TOO_NEAR) and told.even and not stays and math.hypot(*told.offset) < NEAR:
             return self._led_on(now, dt)
-        if self.waiting <= dt and not aloft or not self.moving and not sets and not slows and state.refused:
+        if self.waiting <= dt and not aloft or not self.moving and not (sets or slows or cramped) and state.refused:
             return Aim()
         pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
         gone = self._gone_round(state)
@@ -174,7 +182,8 @@ class Aim:
 
     def _aimed(self, wish: Wish, camera_yaw: float, state: CharacterState, stays: bool, farthest: float, dt: float) -> Aim:
         """The button is held: the ring goes ahead of who moves, and with the stick of who stands."""
-        moving, heading, place, offset = _pace(state) > (self._least(state, self.tilt) if self.even and not stays else MOVING), None, None, self.offset  # who goes back from it stands soon
+        least = math.inf if self.led else self._least(state, self.tilt) if self.even and not stays else MOVING  # who goes back from it, or is right before it, stands soon
+        moving, heading, place, offset = _pace(state) > least, None, None, self.offset
         if moving:
             offset = _ring(state)
         else:
@@ -210,7 +219,7 @@ class Aim:
 
     def _stopped(self, state: CharacterState, even: bool) -> bool:
         """Whether somebody let go of the ring on his way and has come to rest before it, as before a box: from there he leaps as one who stands."""
-        if not self.moving or self.aiming or even or _pace(state) > STANDS or state.active == "jump":
+        if not self.moving or self.aiming or even or _pace(state) > SLOWED or state.active == "jump":
             return False
         x, z = self._there(state)
         ahead = (x - float(state.ground[0])) * math.sin(self.course) + (z - float(state.ground[1])) * math.cos(self.course)
@@ -283,7 +292,7 @@ class Aim:
             turns = self.course if abs(float(state.velocity[1])) > ARC and _pace(state) > MOVING else None
             return Leap(None, heading=turns, stays=self.rests, along=True, waited=0.0 if self.aiming else (PATIENCE - self.waiting) / LONGER)
         x, z = self._there(state)
-        x, z = (x, z) if self.moving else on_top(stopped_at((x, z), self.heading, state, around, reaches), floor, around)
+        x, z = on_top((x, z) if self.moving else stopped_at((x, z), self.heading, state, around, reaches), floor, around)
         place = np.array([x, floor_at(x, z, around, floor + UP), z])
         steep = SLOPED * float(np.hypot(*slope_at(x, z, around, place[1] + LOWER))) if self.moving and len(around) else 0.0
         if self.moving and abs(float(state.velocity[1])) > ARC:  # he turns there as he flies, and goes on round it

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from gambol.controllers.contract import CharacterState
 from gambol.controllers.navigation import floor_at, slope_at
 
-from .straight_ahead import UP
+from .straight_ahead import RISES, UP, onto
 
 ROUND = np.stack([np.sin(np.arange(8) * math.pi / 4.0), np.cos(np.arange(8) * math.pi / 4.0)], axis=-1)
 """Ways (8, 2) all round."""
@@ -22,6 +23,10 @@ STEPS = 0.1, 0.0125
 """The edge of what the ring lies on is looked for in such steps back to the body, and found to so much [m]."""
 LEVEL = 0.03
 """Floor of one height is no more uneven than this [m]."""
+AT_HAND = np.arange(0.15, 0.71, 0.05)
+"""What rises no farther before somebody than the last of these [m] he stands before, or will in a moment, ..."""
+WALKS = 1.8
+"""... if he goes no faster than this [m/s]."""
 
 
 def on_top(place: tuple[float, float], floor: float, around: Sequence[Any]) -> tuple[float, float]:
@@ -31,6 +36,23 @@ def on_top(place: tuple[float, float], floor: float, around: Sequence[Any]) -> t
         return place
     places = (np.asarray(place) + np.arange(FINE, ASIDE + 0.5 * FINE, FINE)[:, None, None] * ROUND).reshape(-1, 2)  # the nearest first
     return next(((float(x), float(z)) for x, z in places if _even((x, z), floor, around)), place)
+
+
+def at_hand(state: CharacterState, way: Sequence[float], around: Sequence[Any]) -> tuple[float, float] | None:
+    """Where x, z [m] from somebody who stands, or walks, right before what he can leap onto, on the way (2,) that he holds his stick, his ring lies at first: on that, where both feet fit; None where there is
+    no such thing."""
+    floor, goes = float(state.floor), math.hypot(*way)
+    if goes == 0.0 or not len(around) or math.hypot(state.velocity[0], state.velocity[2]) > WALKS:
+        return None
+    here = np.asarray(state.ground[:2], float)
+    if not any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in here + AT_HAND[:, None] * np.asarray(way, float) / goes):
+        return None
+    lies = onto(state, way, around)
+    if lies is None:
+        return None
+    place = on_top((float(here[0] + lies[0]), float(here[1] + lies[1])), floor, around)
+    high = floor_at(*place, around, floor + UP)
+    return lies if high > floor + RISES and not slope_at(*place, around, high + LEVEL).any() and _even(place, floor, around) else None
 
 
 def past_edge(place: tuple[float, float], here: tuple[float, float], high: float, around: Sequence[Any]) -> float:

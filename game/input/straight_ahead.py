@@ -29,8 +29,14 @@ STOPS = 0.6, 0.45
 """Straight ahead somebody looks so far [m], and farther by so much for the square of his speed over his agility [s²/m]: a run of 3 m/s stops in 2 m."""
 UP = 0.95
 """A leap lands no higher than this over the feet [m], and no lower than a step."""
-CLEARS = (STEP, 0.35), (0.28, 0.52)
-"""Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees would come against it."""
+CLEARS = (STEP, 0.28), (0.28, 0.35), (0.33, 0.44), (0.38, 0.48)
+"""Who leaps onto what is higher than the firsts [m] starts so far before it [m], at standard height: nearer, his knees, or his feet on the way up, would come against it."""
+AGAIN = 0.12
+"""Who can't from there goes so much farther back [m], at standard height."""
+LEGS = 0.1
+"""Either of his legs does, so far aside of his middle [m], at standard height: askew, one of them is nearer to it."""
+LOW = 0.5
+"""Who goes straight at what is no higher than this [m], at standard height, has leaping onto it in mind."""
 BACK = 0.25
 """He makes room for that who has so much of it behind him [m]."""
 EVEN, LEVEL = (0.25, 0.5, 0.75, 1.0, 1.25), 0.05
@@ -55,7 +61,8 @@ def headlong(controller: Any, state: CharacterState, velocity: Sequence[float], 
         return None
     ahead = np.asarray(velocity, float) / math.hypot(*velocity)
     there, left = np.asarray(state.ground[:2], float) + (met.far + FLAT) * ahead, WIDE * np.array([ahead[1], -ahead[0]])
-    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(controller, state, velocity, around, met, False)
+    low = floor_at(float(there[0]), float(there[1]), around, met.floor + UP) < met.floor + LOW * controller.size  # his leap begins where he rests
+    return None if any(room(there + side, met.floor, around) > 0.0 for side in (left, -left)) else _short(controller, state, velocity, around, met, low)
 
 
 class Met(NamedTuple):
@@ -94,25 +101,31 @@ def _short(controller: Any, state: CharacterState, velocity: Sequence[float], ar
     return float(x), float(z)
 
 
-def lacking(place: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any], size: float, within: float = math.inf) -> float:
-    """How much farther [m] a body of a size at a place (2,) on a floor [m] would have to be from what lies ahead (2,) of it, no farther than `within` [m], to leap onto that."""
-    lacks = 0.0
-    for high, clear in CLEARS:
-        for far in np.arange(0.0, min(clear * size, within), FINE):
-            x, z = place + far * ahead
-            if high * size < floor_at(float(x), float(z), around, floor + UP) - floor:
-                lacks = max(lacks, clear * size - far)
-                break
+def lacking(place: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence[Any], size: float, within: float = math.inf, more: float = 0.0) -> float:
+    """How much farther [m] a body of a size at a place (2,) on a floor [m] would have to be from what lies ahead (2,) of it, no farther than `within` [m], to leap onto that, and
+    `more` [m] at standard height farther."""
+    lacks, risen, left = 0.0, 0.0, LEGS * size * np.array([ahead[1], -ahead[0]])
+    for far in np.arange(0.0, min((CLEARS[-1][1] + more) * size, within), FINE):
+        rise = max(floor_at(float(x), float(z), around, floor + UP) for x, z in (place + far * ahead + left, place + far * ahead - left)) - floor
+        if rise > risen:
+            risen = rise
+            clear = clear_of(rise, size)
+            lacks = max(lacks, clear + more * size - far if clear else 0.0)
     return lacks
 
 
-def cramped(controller: Any, state: CharacterState, place: Sequence[float], around: Sequence[Any]) -> float:
+def clear_of(rise: float, size: float = 1.0) -> float:
+    """How far [m] before what rises so high [m] a body of a size starts that leaps onto it."""
+    return max((clear * size for high, clear in CLEARS if high * size < rise), default=0.0)
+
+
+def cramped(controller: Any, state: CharacterState, place: Sequence[float], around: Sequence[Any], again: bool = False) -> float:
     """How much farther [m] somebody would have to be from what he wants to leap onto, whose ring lies at a place (2,) [m]; 0 where he is far enough, and where he has
-    no room to go back."""
+    no room to go back. again: whether he found that he can't from where he thought so."""
     here, floor = np.asarray(state.ground[:2], float), float(state.floor)
     way = np.asarray(place, float) - here
     ahead = way / max(float(np.hypot(*way)), 1e-9)
-    lacks = lacking(here, ahead, floor, around, controller.size, float(np.hypot(*way)))
+    lacks = lacking(here, ahead, floor, around, controller.size, float(np.hypot(*way)), AGAIN * again)
     behind = here - (BACK + lacks) * ahead
     return lacks if lacks and room(behind, floor, around) > 0.0 and abs(floor_at(float(behind[0]), float(behind[1]), around, floor + STEP) - floor) < RISES else 0.0
 

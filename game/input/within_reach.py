@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from gambol.controllers.contract import CharacterState
-from gambol.controllers.navigation import floor_at
+from gambol.controllers.navigation import STEP, floor_at
 
 from .on_top import past_edge
-from .straight_ahead import UP
+from .straight_ahead import UP, clear_of
 
 BEYOND = 0.2
 """On a floor no lower the ring stops so far beyond what the body reaches there [m]: from everywhere it can be, one leaps as far as one can."""
@@ -21,6 +21,8 @@ CLIMBS = 1.5
 """Each metre that a box is higher takes so much off where the ring stops [m]: what leaps onto boxes fall short by, and a reserve."""
 OVER_EDGE = 0.86, 1.9
 """And it stops so far past the edge of a box: this share of how far the body leaps over level ground, and so much less for each metre up [m]. From near by legs clear no more of a high one."""
+FROM_NEAR = 0.35, 2.0
+"""Nor farther past the edge than the first [m] of who is as near to that as one can be for a leap, and so many times as far as he is farther off: legs and arms swing too low over it."""
 LOWER = 0.05
 """Floor that is lower by more than this [m] may be reached from farther off."""
 
@@ -43,7 +45,8 @@ def stopped_at(place: tuple[float, float], heading: float | None, state: Charact
     stops = reach - CLIMBS * up + (ONTO if up > LOWER else BEYOND)
     if LOWER < up and reach < math.inf:
         past = past_edge(place, (float(state.ground[0]), float(state.ground[1])), there, around)
-        stops = min(stops, far - max(past - max(OVER_EDGE[0] * reach - OVER_EDGE[1] * up, 0.0), 0.0))
+        over = min(OVER_EDGE[0] * reach - OVER_EDGE[1] * up, FROM_NEAR[0] + FROM_NEAR[1] * (far - past - clear_of(up)) if up > STEP else math.inf)
+        stops = min(stops, far - max(past - max(over, 0.0), 0.0))
     share = stops / max(far, 1e-9)
     if share >= 1.0 or there < floor - LOWER:
         return place

@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import BRAKES, FARTHEST, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, before, braked, cramped, even_ahead, headlong, in_view, landing, last_chance, leaps, leaving, onto, push, ring, rises
+from ..input import BRAKES, FARTHEST, MOVING, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, at_hand, before, braked, cramped, even_ahead, headlong, in_view, landing, last_chance, leaps, leaving, onto, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -29,8 +29,11 @@ from .state import SessionState, Player
 
 KEPT = 30 * RATE
 """How many steps of the world one can go back ..."""
-GOES_BACK, GLIDES, LITTLE, STANDS = 0.5, 0.3, 0.03, 0.2
-"""So fast goes back who is too near to what he would leap onto [m/s], until he comes far enough as he stops, in so long [s], to so much [m]; slower than the last [m/s] he stands."""
+GOES_BACK, GLIDES, LITTLE, STANDS = 0.5, 0.3, 0.03, (0.2, 0.45)
+"""So fast goes back who is too near to what he would leap onto [m/s], until he comes far enough as he stops, in so long [s], to so much [m]; slower than the fourths [m/s] he stands, the
+second if he goes to his ring: he leaps as he comes to rest, but not with his feet a stride apart."""
+STRAIGHT = 0.9
+"""He goes to it with so much of his speed."""
 CAST = 8
 """... with so many characters; with more, fewer."""
 
@@ -77,8 +80,8 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         back = _back(player, character, stands, moment.after.props)
         farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
         even = (held.jump or player.aim.wants) and even_ahead(state, moment.after.props)
-        held_up = held.jump and not player.aim.wants and player.run_up.halt is not None
-        ahead = onto(state, in_view(held.move, player.camera.yaw), moment.after.props) if held_up else None
+        held_up = player.run_up.halt is not None and np.hypot(state.velocity[0], state.velocity[2]) < MOVING
+        ahead = None if not held.jump or player.aim.wants else (onto if held_up else at_hand)(state, in_view(held.move, player.camera.yaw), moment.after.props)
         aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even, state, ahead) if jump is not None else player.aim
         if aim.stands:
             wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
@@ -120,11 +123,13 @@ def _back(player: Player, character: Character, stands: CharacterState, props: S
     if not aim.stands or far < NEAR or aloft(character.state):
         return None
     x, z = (-GOES_BACK * part / far for part in aim.offset)
-    lacks = cramped(character.controller, stands, [float(stands.ground[k]) + aim.offset[k] for k in (0, 1)], props)
+    lacks = cramped(character.controller, stands, [float(stands.ground[k]) + aim.offset[k] for k in (0, 1)], props, aim.backs)
     goes = float(np.hypot(character.state.velocity[0], character.state.velocity[2]))
     if lacks > max(GLIDES * goes, LITTLE):
         return x, z
-    return (0.0, 0.0) if aim.place is not None and goes > STANDS else None
+    vx, vz = in_world(character.state.ground, character.state.velocity)
+    to_it = bool(vx * x + vz * z < -STRAIGHT * GOES_BACK * goes)
+    return (0.0, 0.0) if (aim.place is not None or aim.led) and goes > STANDS[to_it] else None
 
 
 def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from gambol.controllers.person import person
+from gambol.game.app.views import previews, scenes
 from gambol.game.input.wish import Wish
-from gambol.game.scene.scene import Box
+from gambol.game.scene.scene import Box, Overlays
 from gambol.game.session.state import begin
 from gambol.game.session.tick import Timeline, refused
 from gambol.game.world.world import DT, Character, World
@@ -81,8 +82,8 @@ def test_who_lets_go_of_the_stick_before_a_box_and_taps_hops_where_he_stands(som
 
 
 def test_who_waits_to_leap_and_tilts_the_stick_elsewhere_goes_there_at_once(somebody):
-    """Before a box he goes back first. Who holds the stick on, or tilts it the way of the ring, still leaps; and nobody who thought better of it is told why he can't leap."""
-    start, tap = (0.0, 0.6, 0.0, 0.0), ((2.5, Wish(move=AHEAD)), (0.1, Wish(move=AHEAD, jump=True)))
+    """Who stands too near to a box goes back first. Who holds the stick on, or tilts it the way of the ring, still leaps; and nobody who thought better of it is told why he can't leap."""
+    start, tap = (0.0, 1.8, 0.0, 0.0), ((0.5, Wish()), (0.1, Wish(move=AHEAD, jump=True)))
     away = played(somebody, (BOX,), start, *tap, (0.1, Wish()), (0.9, Wish(move=RIGHT)))
     assert away[-55].players[0].aim.wants and not away[-45].players[0].aim.wants
     assert all(state.active == "locomotion" for state in states(away)[-40:]) and states(away)[-1].ground[0] < -0.3
@@ -100,3 +101,21 @@ def test_who_holds_the_stick_as_he_lands_on_both_feet_walks_on_as_he_rises(someb
     speed = np.linalg.norm(roots[lands + 6:, [0, 2]] - roots[lands:-6, [0, 2]], axis=-1) / (6 * DT)
     walks = next(k for k in range(20, len(speed)) if speed[k] > 0.6) * DT
     assert walks < soon
+
+
+@pytest.mark.parametrize("run, high, then", [(1.0, 0.36, AHEAD), (0.5, 0.32, AHEAD), (1.0, 0.58, BACK)])
+def test_nobody_is_told_that_he_cannot_leap_before_he_is_refused(somebody, run, high, then):
+    """Who let go of the key waits for his feet, and was told in turn that it is too far, too near, and what he would hit, until he leapt. Who aims on the move was told of each moment's pace."""
+    thing = Box((0.0, 0.5 * high, 4.5), (3.0, high, 1.0))
+    go, tap, later = Wish(move=AHEAD, run=run), Wish(move=then, run=run, jump=True), Wish(move=then, run=run)
+    told, aimed, given_up = [], (), []
+    moments = played(somebody, (thing,), (0.0, 0.0, 0.0, 0.0), (1.5, go), (0.15, tap), (1.5, later))
+    for before, moment in zip(moments, moments[1:]):
+        aimed = previews(moment, aimed)
+        if moment.players[0].aim.wants:
+            text = scenes(moment, 1.0, [moment.players[0].view(1.0)], Overlays(), aimed=aimed)[0].text
+            told += [(moment.players[0].aim.aiming, " ".join(text))] if text else []
+        given_up += refused(before, moment, aimed)
+    assert len(given_up) <= 1
+    assert not any("no jump" in text for aiming, text in told if not aiming)
+    assert not any("too far for this" in text or "too near for this" in text for _, text in told)

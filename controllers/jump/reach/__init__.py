@@ -1,11 +1,11 @@
 """What a body can reach with a jump: plans that touch nothing, why there is none, the nearest place to which there is one."""
 
 from .arcs import How
-from .feasibility import BESIDE, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Refused, meant, too_weak
+from .feasibility import BESIDE, HARD, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Refused, meant, too_weak
 from .reach import Found, Reach
 from .seeking import SHARE, Onward, Pieces, Seeking, whole
 from .sweep import Touch
 
 __all__ = [
-    "BESIDE", "Found", "How", "MOMENTARY", "Onward", "PACE", "Pieces", "Reach", "Refused", "SETS_FEET", "SHARE", "Seeking", "TOO_NEAR", "Touch", "meant", "too_weak", "whole",
+    "BESIDE", "Found", "HARD", "How", "MOMENTARY", "Onward", "PACE", "Pieces", "Reach", "Refused", "SETS_FEET", "SHARE", "Seeking", "TOO_NEAR", "Touch", "meant", "too_weak", "whole",
 ]

@@ -45,6 +45,8 @@ HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
 PACE = "too far for this ", TOO_NEAR
 """And one for which the foot that pushes would have to speed up or brake too much."""
+BESIDE_IT = 0.05
+"""What is nearer than this [m] is no way ahead."""
 GRAZE = 0.05
 """So much of its flesh a flying body may graze things with [m]."""
 RUNS_TURNED = 0.8
@@ -67,8 +69,10 @@ class Refused(Unable):
 
 def _away(way: np.ndarray) -> str:
     """How far away something is by a way (3,) [m], and how far up or down."""
-    up = f" and {abs(way[1]):.1f} m {'up' if way[1] > 0.0 else 'down'}" if abs(way[1]) > 0.05 else ""
-    return f"{np.hypot(way[0], way[2]):.1f} m away{up}"
+    far, up = float(np.hypot(way[0], way[2])), f"{abs(way[1]):.1f} m {'up' if way[1] > 0.0 else 'down'}" if abs(way[1]) > 0.05 else ""
+    if far < BESIDE_IT:
+        return up or "where it stands"
+    return f"{far:.1f} m away{up and ' and ' + up}"
 
 
 def meant(place: Any, airtime: float | None = None) -> np.ndarray:
@@ -173,8 +177,13 @@ def blocked(physique: Physique, way: Path, around: Sequence[Any]) -> str:
             near = gap(places, thing)
             if near.min() < radius * size - GRAZE:
                 ahead = np.linalg.norm((places[int(near.argmin())] - way.leave)[[0, 2]])
-                return f"its {name} would hit something {ahead:.1f} m ahead"
+                return hits(name, float(ahead))
     return ""
+
+
+def hits(part: str, ahead: float) -> str:
+    """That a part of a body would hit something so far ahead [m] of it, in words."""
+    return f"its {part} would hit " + (f"something {ahead:.1f} m ahead" if ahead >= BESIDE_IT else "what it is right beside")
 
 
 def _upper(physique: Physique, way: Path, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -98,10 +98,11 @@ def _sought(known: tuple[Any, ...]) -> Seeking[Any]:
 
 
 class Onward(NamedTuple):
-    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, after how many steps, and where (3,) [m] his pelvis was as he began,
-    and the place (3,) that was asked for then."""
+    """How far somebody is with seeking: what, None where he has yet to come to where he seeks from, after how many steps, where (3,) [m] his pelvis was as he began,
+    the place (3,) that was asked for then, and whether that was for the second time."""
 
     seeking: Seeking[Any] | None
     steps: int = 0
     began: Any = None
     place: Any = None
+    anew: bool = False

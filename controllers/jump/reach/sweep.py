@@ -11,6 +11,7 @@ from ...body import centre_of_mass, forward_kinematics
 from ...navigation import gap
 from ..body import Physique
 from ..motion import Plan, capsule_places, near
+from .feasibility import hits
 
 RATE = 72.0
 """So many poses a second are looked at, and half-way between them."""
@@ -48,7 +49,7 @@ def touch(physique: Physique, made: Plan, around: Sequence[Any]) -> Touch | None
         if deep.max() > 0.0:
             moment, place = np.unravel_index(int(deep.argmax()), deep.shape)
             part = names[int(np.searchsorted(np.cumsum(widths), place, "right"))]
-            ahead = float(np.linalg.norm((every[moment, place] - every[0, place])[[0, 2]]))
+            ahead = float(np.linalg.norm((every[moment, place] - centre[0])[[0, 2]]))  # of the body: a foot that swings comes from far behind
             pose = chosen[(moment + 1) // 2]
-            return Touch(f"its {part} would hit something {ahead:.1f} m ahead", made.roots[pose], made.local[pose], every[moment, place], float(deep[moment, place]))
+            return Touch(hits(part, ahead), made.roots[pose], made.local[pose], every[moment, place], float(deep[moment, place]))
     return None
