@@ -409,7 +409,8 @@ class Jump(Reach, Controller):
         if np.ndim(state.ground) != 1:
             return False
         size, deep = self.physique.size, float(state.floor) - floor_at(x, z, intent.around)
-        if deep >= (STANDS - 0.02) * size and np.abs(state.velocity).max() < STILL and hangs(self.skeleton, state.pose, intent.around, size):
+        stands = np.any(state.contacts) and np.abs(state.velocity).max() < STILL  # who lies across an edge has his soles over nothing, too
+        if stands and deep >= (STANDS - 0.02) * size and hangs(self.skeleton, state.pose, intent.around, size):
             return True
         return deep >= 0.2 * size and (over_nothing(self.skeleton, state.pose, state.contacts, intent.around, float(state.floor), size)
                                        or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
