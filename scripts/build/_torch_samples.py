@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 PLACED, STANDS = 63, 4
 ANGLES, HEIGHT, PITCH, ROLL, YAW, FORWARD, LEFT = 57, 57, 58, 59, 60, 61, 62
@@ -60,16 +60,20 @@ class Body:
         self.columns, self.signs, self.knee = get("mirror_columns", torch.long), get("mirror_signs"), np.asarray(pack["knee"]).tolist()
         self.group, self.twin, self.middle = get("group", torch.long), get("twin", torch.long), get("middle", torch.bool)
         self.parts, self.lying, self.side = get("parts"), get("lying"), get("side")
+        self.inside = self.middle[:, None] & torch.tensor([True, False, False], device=device)
         self.kinds, self.often, self.lags = get("kinds", torch.bool), get("often"), get("lags", torch.long)
         depth = [0] * len(self.parents)
         for j in range(1, len(depth)):
             depth[j] = depth[self.parents[j]] + 1
-        self.levels = [[j for j in range(len(depth)) if depth[j] == d] for d in range(max(depth) + 1)]
-        self.above = [[self.levels[d].index(self.parents[j]) for j in level] for d, level in enumerate(self.levels[1:])]
-        self.order = torch.tensor(np.argsort(np.concatenate(self.levels)), device=device)
-        self.parent = torch.tensor(np.maximum(self.parents, 0), device=device)
+        levels = [[j for j in range(len(depth)) if depth[j] == d] for d in range(max(depth) + 1)]
         first = {int(j): k for k, j in enumerate(np.asarray(pack["joints"]))}
-        self.own = [[first.get(j, len(first)) for j in level] for level in self.levels]
+
+        def there(numbers):
+            return torch.tensor(numbers, device=device)
+        # numbers lie where they are used: a list would be carried over at each use, and such steps can't be recorded
+        self.levels, self.above = list(map(there, levels)), [there([levels[d].index(self.parents[j]) for j in level]) for d, level in enumerate(levels[1:])]
+        self.own = [there([first.get(j, len(first)) for j in level]) for level in levels]
+        self.order, self.parent = there(np.argsort(np.concatenate(levels))), there(np.maximum(self.parents, 0))
         self.reference = torch.cat([get("reference")[self.joints], get("reference")[None, len(depth) - 1]])  # the last one is the toes'
         self.leg = float(self.legs_of(self.offsets))
 
@@ -85,16 +89,16 @@ class Body:
         root = exp(torch.stack([poses[..., PITCH], torch.zeros_like(poses[..., 0]), poses[..., ROLL]], -1))
         levels = [(root if heading is None else product(yaw(heading), root))[..., None, :, :]]
         for above, own in zip(self.above, self.own[1:], strict=True):
-            levels.append(product(levels[-1][..., above, :, :], local[..., own, :, :]))
-        return torch.cat(levels, -3)[..., self.order, :, :]
+            levels.append(product(levels[-1].index_select(-3, above), local.index_select(-3, own)))
+        return torch.cat(levels, -3).index_select(-3, self.order)
 
     def positions(self, orientations: Tensor, offsets: Tensor) -> Tensor:
         """Joints (..., J, 3) from the hips."""
-        bones = turned(orientations[..., self.parent, :, :], offsets)
+        bones = turned(orientations.index_select(-3, self.parent), offsets)
         levels = [torch.zeros_like(bones[..., :1, :])]
         for above, level in zip(self.above, self.levels[1:], strict=True):
-            levels.append(levels[-1][..., above, :] + bones[..., level, :])
-        return torch.cat(levels, -2)[..., self.order, :]
+            levels.append(levels[-1].index_select(-2, above) + bones.index_select(-2, level))
+        return torch.cat(levels, -2).index_select(-2, self.order)
 
     def placed(self, poses: Tensor, offsets: Tensor) -> Tensor:
         """Joints (..., J, 3) of placed poses (..., 63)."""
@@ -143,7 +147,7 @@ def bodies(body: Body, count: int, dice: Dice) -> Tensor:
     size = 1 + 0.06 * dice.normal(count, 1).clamp(-2.5, 2.5)
     parts = 1 + body.parts * dice.normal(count, len(body.parts)).clamp(-2.5, 2.5)
     lying = dice.normal(count, len(body.parents), 3) * body.lying[:, None]
-    lying = torch.where((body.middle[:, None] & torch.tensor([True, False, False], device=body.device)), torch.zeros_like(lying), lying)
+    lying = lying.masked_fill(body.inside, 0.0)
     offsets = body.offsets * (size * parts[:, body.group])[..., None] + lying[:, body.twin] * body.side
     offsets = torch.where((dice.even(count) < 0.25)[:, None, None], body.offsets, offsets)
     return torch.cat([body.offsets[:1].expand(count, 1, 3), offsets[:, 1:]], 1)
@@ -155,9 +159,9 @@ def worn(body: Body, count: int, dice: Dice) -> tuple[Tensor, ...]:
     kind = torch.searchsorted(torch.cumsum(body.often, 0), dice.even(count))
     free = kind >= len(body.kinds)
     placed = torch.where(free[:, None], dice.even(count, slots) < 0.6, body.kinds[kind.clamp(max=len(body.kinds) - 1)])
-    sure = nn.functional.one_hot(dice.whole(2, 7, count), slots).bool()
+    sure = dice.whole(2, 7, count)[:, None] == torch.arange(slots, device=body.device)
     placed = placed | (sure & ~placed.any(-1, keepdim=True))
-    turning, way = torch.where(kind == 2, 0.8, 0.45), dice.even(count)
+    turning, way = 0.45 + 0.35 * (kind == 2), dice.even(count)
     spins = placed & (way < turning)[:, None]
     spins = spins | (placed & ((way >= turning) & (way < turning + 0.1))[:, None] & (dice.even(count, slots) < 0.5))
     unplaced = spins & free[:, None] & (dice.even(count, slots) < 0.2) & ~sure
@@ -168,7 +172,7 @@ def worn(body: Body, count: int, dice: Dice) -> tuple[Tensor, ...]:
     known = known & ~((way >= 0.15) & (way < 0.35) & (dice.even(count, 1, slots) < 0.4) & (lag < since))
     known = known & ~((way >= 0.35) & (way < 0.45) & (dice.even(count, 1, slots) < 0.4) & (lag >= since.clamp(max=lags - 1)))
     level = torch.where(dice.even(count) < 0.5, nothing, dice.even(count))[:, None, None, None]
-    sitting = torch.where(dice.even(count) < 0.5, nothing, 0.05)[:, None, None, None]
+    sitting = 0.05 * (dice.even(count) >= 0.5)[:, None, None, None]
     moved = level * 0.008 * dice.normal(count, lags, slots, 3)
     spun = exp(level * 0.015 * dice.normal(count, lags, slots, 3) + sitting * dice.normal(count, 1, slots, 3))
     astray = dice.even(count)
@@ -183,25 +187,25 @@ def moments(body: Body, motion: Motion, at: Tensor, offsets: Tensor) -> tuple[Te
     own = motion.orientations[which].unflatten(-1, (3, 3))
     ratio, joints = body.legs_of(offsets) / body.leg, body.positions(own, offsets[:, None])
     height = motion.frames[at, HEIGHT]
-    lowest = height + body.positions(own[:, 0], body.offsets)[:, body.legs, 1].amin(-1)
-    up = lowest - (height * ratio + joints[:, 0][:, body.legs, 1].amin(-1))
+    lowest = height + body.positions(own[:, 0], body.offsets).index_select(1, body.legs)[..., 1].amin(-1)
+    up = lowest - (height * ratio + joints[:, 0].index_select(1, body.legs)[..., 1].amin(-1))
     way, facing = motion.track[which] - motion.track[at][:, None], motion.track[at, 2]
     c, s = facing.cos()[:, None], facing.sin()[:, None]
     hips = torch.stack([(c * way[..., 0] - s * way[..., 1]) * ratio[:, None], motion.frames[which, HEIGHT] * ratio[:, None] + up[:, None],
                         (s * way[..., 0] + c * way[..., 1]) * ratio[:, None]], -1)
     heading = yaw(way[..., 2])[:, :, None]
-    places = turned(heading, joints[:, :, body.slots]) + hips[:, :, None]
+    places = turned(heading, joints.index_select(2, body.slots)) + hips[:, :, None]
     truth = motion.frames[at].clone()
     truth[:, HEIGHT] = height * ratio + up
     truth[:, YAW:] = 0
-    return truth, places, product(heading, own[:, :, body.slots]), body.lags <= motion.behind[at][:, None]
+    return truth, places, product(heading, own.index_select(2, body.slots)), body.lags <= motion.behind[at][:, None]
 
 
 def view(body: Body, fps: float, places: Tensor, turns: Tensor, placed: Tensor, spins: Tensor, offsets: Tensor, given: Tensor) -> tuple[Tensor, Tensor]:
     """Inputs (B, INPUTS) and the ground (B, 3) they are seen from: see `slots.view_kernel`."""
     steps, lags = len(body.lags), body.lags.float()
     number = torch.arange(steps, device=body.device)[None, :, None]
-    newest, latest = (torch.where(known, number, steps).amin(1) for known in (placed, spins))
+    newest, latest = (number.expand_as(known).masked_fill(~known, steps).amin(1) for known in (placed, spins))
     seen, facing = (newest < steps).float()[..., None], (latest < steps).float()[..., None]
     newest, latest = newest.clamp(max=steps - 1), latest.clamp(max=steps - 1)
     place = places.gather(1, newest[:, None, :, None].expand(-1, -1, -1, 3))[:, 0]
@@ -222,7 +226,7 @@ def view(body: Body, fps: float, places: Tensor, turns: Tensor, placed: Tensor, 
            torch.cat([pace * both, both], -1).transpose(1, 2).flatten(2), torch.cat([spin * spinning, spinning], -1).transpose(1, 2).flatten(2)]
     shape = (offsets - body.offsets) / 0.05
     shape = torch.cat([torch.zeros_like(shape[:, :1]), shape[:, 1:]], 1)
-    return torch.cat([torch.cat(own, -1).flatten(1), shape.flatten(1)], -1), torch.cat([middle[:, [0, 2]], heading[:, None]], -1)
+    return torch.cat([torch.cat(own, -1).flatten(1), shape.flatten(1)], -1), torch.cat([middle[:, ::2], heading[:, None]], -1)
 
 
 def _columns(turns: Tensor) -> Tensor:
@@ -254,9 +258,8 @@ def sample(body: Body, motion: Motion, at: Tensor, offsets: Tensor, wearing: tup
     return Batch(inputs, truth, motion.stands[at], offsets, body.placed(truth, offsets))
 
 
-def batches(body: Body, motion: Motion, size: int, seed: int) -> Iterator[Batch]:
-    """All that are drawn with a seed."""
-    dice = Dice(torch.Generator(body.device).manual_seed(seed), body.device)
+def batches(body: Body, motion: Motion, size: int, dice: Dice) -> Iterator[Batch]:
+    """All that are drawn from now on."""
     while True:
         draw = torch.rand(size, device=body.device, generator=dice.generator, dtype=torch.float64)
         at = motion.good[torch.searchsorted(motion.upto, draw).clamp(max=len(motion.good) - 1)]
