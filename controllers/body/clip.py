@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation, Slerp
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation, RotationSpline, Slerp
 
 from .brief import brief
 from .skeleton import Skeleton, forward_kinematics
@@ -58,8 +59,11 @@ class Clip:
         """Frames start … stop − 1."""
         return replace(self, root=self.root[start:stop], quaternions=self.quaternions[start:stop])
 
-    def resample(self, fps: float) -> Clip:
-        """The same motion at another frame rate [Hz]: linear root, spherical-linear joints. ValueError for what is none."""
+    def resample(self, fps: float, smooth: bool = False) -> Clip:
+        """The same motion at another frame rate [Hz]: linear root, spherical-linear joints. ValueError for what is none.
+
+        smooth: cubic splines through the frames instead, of rotations as well (scipy's `RotationSpline`): slow recordings have corners at each frame otherwise.
+        """
         if not isinstance(fps, float | int | np.floating | np.integer) or not 0.0 < fps < np.inf:
             raise ValueError(f"fps is a number of frames a second, above zero; got {fps!r}")
         if len(self) < 2:
@@ -67,9 +71,9 @@ class Clip:
         old = np.arange(len(self)) * self.frame_time
         new = np.arange(int(np.floor(self.duration * fps + 1e-6)) + 1) / fps
         new = np.minimum(new, old[-1])
-        root = np.stack([np.interp(new, old, self.root[:, i]) for i in range(3)], -1)
-        joints = [Slerp(old, Rotation.from_quat(self.quaternions[:, j]))(new).as_quat()
-                  for j in range(len(self.skeleton))]
+        root = CubicSpline(old, self.root)(new) if smooth else np.stack([np.interp(new, old, self.root[:, i]) for i in range(3)], -1)
+        between = RotationSpline if smooth else Slerp
+        joints = [between(old, Rotation.from_quat(self.quaternions[:, j]))(new).as_quat() for j in range(len(self.skeleton))]
         return replace(self, frame_time=1.0 / fps, root=root, quaternions=np.stack(joints, 1))
 
     def mirror(self) -> Clip:

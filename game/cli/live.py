@@ -141,4 +141,4 @@ def write_take(out: Path, name: str, skeleton: Any, poses: list, contacts: list)
     from ..output import Take, write
 
     for path in write(out, [Take(name, skeleton, tuple(poses), np.stack(contacts))], FPS):
-        say(f"{path}: {len(poses)} frames, {len(poses) / FPS:.1f} s")
+        say(f"{path}: {len(poses)} frames at {FPS:g} a second, {len(poses) / FPS:.1f} s")

@@ -109,6 +109,6 @@ def performance(path: str | Path, reading: Any = None) -> Clip:
     if len(clip) < LEAST or clip.duration * FPS < LEAST - 1.01:
         raise MotionFileError(f"{path}: {len(clip)} frames in {clip.duration:.3g} s are too few; a performance needs {LEAST} in {(LEAST - 1) / FPS:g} s at least")
     try:
-        return hinged(retarget(clip)).resample(FPS)
+        return hinged(retarget(clip)).resample(FPS, smooth=True)
     except ValueError as error:
         raise MotionFileError(f"{path}: {error}") from None

@@ -1,5 +1,7 @@
 """Forward kinematics against scipy and by hand; poses and clips; the standard human."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sampling import BATCHES, angle, rotations
@@ -135,6 +137,25 @@ def test_resample_to_the_same_rate_changes_nothing(rng):
     same = clip.resample(30.0)
     np.testing.assert_allclose(same.root, clip.root, atol=1e-12)
     assert angle(same.rotations, clip.rotations) < 1e-7
+
+
+def test_smoothly_resampled_a_swing_has_no_corners(rng):
+    """Of a pendulum on a way that rises and falls, 24 frames a second: its own frames stay, and what lies between is a tenth as far off as along lines."""
+    def swung(fps):
+        at = np.arange(round(2 * fps) + 1) / fps
+        root = np.stack([np.sin(4 * at), np.cos(3 * at), at], -1)
+        turns = Rotation.from_rotvec(np.outer(np.sin(5 * at), [0.3, 0.8, -0.5])).as_quat()
+        plain = random_clip(rng, frames=len(at))
+        joints = len(plain.skeleton)
+        return replace(plain, frame_time=1 / fps, root=root, quaternions=np.repeat(turns[:, None], joints, 1))
+
+    slow, true = swung(24.0), swung(60.0)
+    same, smooth, lines = slow.resample(24.0, smooth=True), slow.resample(60.0, smooth=True), slow.resample(60.0)
+    np.testing.assert_allclose(same.root, slow.root, atol=1e-12)
+    assert angle(same.rotations, slow.rotations) < 1e-7
+    assert np.abs(smooth.root - true.root).max() < 0.1 * np.abs(lines.root - true.root).max()
+    inner = slice(5, -5)  # nothing tells a spline how it goes on beyond its ends
+    assert angle(smooth.rotations[inner], true.rotations[inner]) < 0.1 * angle(lines.rotations[inner], true.rotations[inner])
 
 
 def test_resample_of_a_single_frame(rng):
