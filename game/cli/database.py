@@ -104,6 +104,6 @@ def _in_words(opened) -> list[str]:
     unsound = sum(int((~opened.sound[take.start:take.stop]).sum()) for take in opened.takes)
     size, images = opened.path.stat().st_size, sum(take.mirrored for take in opened.takes)
     return [f"{opened.path}: {len(opened):,} frames at {opened.fps:g} a second, {size / 1e6:.0f} MB",
-            f"{len(opened.takes)} takes, {images} of them mirror images; {len(subjects)} subjects",
+            f"{len(opened.takes)} takes, {images} of them mirror images; {len(subjects)} subject{'s' * (len(subjects) != 1)}",
             f"{unsound:,} frames are unsound and never used",
             ", ".join(f"{action} {length / 60:.1f} min" for action, length in seconds.most_common())]

@@ -213,4 +213,6 @@ def _figures(clip: Any, poses: list, controls: Any) -> list[str]:
     lines = [f"{'its points in the world':24} {apart.mean():7.2f} cm, {apart.max():.1f} at most",
              f"{'joints in the world':24} {away.mean():7.2f} cm, {away.max():.1f} at most",
              f"{'joint angles':24} {turned.mean():7.2f}°, {turned.max():.1f} at most"]
-    return lines + ([f"{'jitter over the clip’s':24} {jitter(found, clip.frame_time) / restless:7.2f}"] if restless > 0.0 else [])
+    shakes = jitter(found, clip.frame_time)
+    shaken = 1000 * shakes * clip.frame_time ** 3 / math.sqrt(20.0)  # third differences of white noise are √20 times as large
+    return lines + ([f"{'jitter over the clip’s':24} {shakes / restless:7.2f}, as noise of {shaken:.1f} mm makes it"] if restless > 0.0 else [])

@@ -168,7 +168,7 @@ class Learner:
         losses: list[float] = []
         while self.batch < self.batches:
             losses.append(self.step())
-            if self.batch % 50 == 0 and progress is not None:
+            if (self.batch % 50 == 0 or self.batch == self.batches) and progress is not None:
                 progress(self.batch, self.batches, float(np.mean(losses)))
                 losses.clear()
             if self.batch % every == 0 or self.batch == self.batches:

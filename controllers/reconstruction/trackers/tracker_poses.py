@@ -38,9 +38,8 @@ RESTING = 0.95
 """What is left of the body's velocity a frame later where no tracker is seen."""
 ACCELERATION = 10.0
 """How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
-ROUGH, WAVERING = 0.002, 0.006
-"""How unsteady poses and what the network expects are, even where trackers are not [m, rad]. What is expected can be smoothed more: the solve meets trackers
-all the same, so that the body does not fall behind them, and what no tracker tells is all the calmer."""
+ROUGH = 0.003
+"""How unsteady poses are even where trackers are not [m, rad]."""
 STEPS, TOLERANCE = 6, 1e-4
 """Of the solver: steps at most, and the share of the energy below which a gain ends them."""
 BEGINNINGS = 8
@@ -59,7 +58,7 @@ class Remembered:
 
     places (SPAN, S, 3) [m], turns (SPAN, S, 3, 3): what slots said in the world, newest first; NaN where nothing. turning: (n,) bool,
     which trackers have told a turn. recent: (T, n, 3) raw points. points, shown: filtered. standing: (4,) how probable it is that heels and balls
-    stand. feet: where they do. expected: (D,) what the network says, placed in the world and filtered.
+    stand. feet: where they do.
     """
 
     pose: np.ndarray
@@ -73,7 +72,6 @@ class Remembered:
     shown: Motion
     standing: np.ndarray
     feet: Feet
-    expected: Motion | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,11 +122,15 @@ class Trackers:
             level = noise(recent)
             filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
             points = np.where(np.isfinite(points), filtered.place, np.nan)
-        after = self._followed(memory, points, turns, BLUR * level, reach / (WAVERING + 2.0 * level) if self.steady else None)
+        after = self._followed(memory, points, turns, BLUR * level)
         found = after.pose
         if not self.steady:
             return self._planted(but(after, recent=recent), found, points)
-        shown = _steadied(memory.shown, found, reach / (ROUGH + 2.0 * level))
+        if np.abs(less(found, memory.shown.place)).max() > _JUMP:
+            shown = Motion(found, np.zeros(WIDTH), _LITTLE)
+        else:
+            near = memory.shown.place + less(found, memory.shown.place)
+            shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
         return self._planted(but(after, recent=recent, points=filtered, shown=shown), shown.place, points)
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
@@ -181,16 +183,16 @@ class Trackers:
         slots[[a, b]], order[[i, j]] = (b, a), (j, i)
         points = memory.points and but(memory.points, place=memory.points.place[order], change=memory.points.change[order])
         return but(memory, places=memory.places[:, slots], turns=memory.turns[:, slots], turning=memory.turning[order],
-                       recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH), expected=None)
+                       recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH))
 
-    def _followed(self, memory, points, turns, blur, index):
+    def _followed(self, memory, points, turns, blur):
         """The memory a frame later, but for what is shown."""
         if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
             told = self._told(memory, points, turns)
             pose = memory.pose + RESTING * less(memory.pose, memory.before)
             pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
-            return but(told, pose=pose, before=memory.pose, standing=_NONE, expected=None)
-        return self._solved(self._told(memory, points, turns), points, turns, blur, index)[0]
+            return but(told, pose=pose, before=memory.pose, standing=_NONE)
+        return self._solved(self._told(memory, points, turns), points, turns, blur)[0]
 
     def _told(self, memory, points, turns):
         """The memory with what trackers say now."""
@@ -208,21 +210,14 @@ class Trackers:
         return but(memory, places=np.concatenate([place[None], memory.places[:-1]]),
                        turns=np.concatenate([turn[None], memory.turns[:-1]]), turning=memory.turning | known)
 
-    def _solved(self, memory, points, turns, blur=0.0, index=None):
-        """The memory with the pose of its newest places, and the energy of that. blur: [m] noise that is left on points. index: by which what the
-        network expects is filtered, see `gains`; not at all by default."""
+    def _solved(self, memory, points, turns, blur=0.0):
+        """The memory with the pose of its newest places, and the energy of that. blur: [m] noise that is left on points."""
         places, spun = np.ascontiguousarray(memory.places[LAGS]), np.ascontiguousarray(memory.turns[LAGS])
         here = np.asarray(np.isfinite(places).all(-1))
         turned = np.asarray(np.isfinite(spun).all((-1, -2)) & self._hearing(memory.turning))
         inputs, ground = np.empty(INPUTS, np.float32), np.empty(3)
         view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
-        steadied = None
-        if index is not None:
-            world = np.empty(WIDTH)
-            seen_kernel(expected, ground, _WORLD, world)
-            steadied = _steadied(memory.expected, world, index)
-            seen_kernel(steadied.place, _WORLD, ground, expected)
         mean = expected + FADING * memory.off
         goals, spun, hold, keep = np.empty_like(points), np.empty_like(turns), np.empty(len(points)), np.empty(len(points))
         goals_kernel(points, turns, ground, 1.0 / (EXACT_PLACE ** 2 + blur ** 2), EXACT_TURN ** -2.0, goals, spun, hold, keep)
@@ -232,7 +227,7 @@ class Trackers:
                             REFERENCE, FIRST, joints, beside, goals, hold, spun, keep, STEPS, TOLERANCE, frame,
                             np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         seen_kernel(frame, ground, _WORLD, pose)
-        return but(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing, expected=steadied), energy
+        return but(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing), energy
 
     def _planted(self, memory, shown, points):
         """The memory with feet as they stand, and the pose to show. shown: (D,) the placed pose without. points: (n, 3) of trackers, NaN where not seen."""
@@ -290,10 +285,3 @@ class Trackers:
             floor[GROUND] = 0.002, 0.002, np.radians(0.3)
             return np.linalg.inv(LOOSENING * (covariance + np.diag(floor ** 2)))
         return made
-
-
-def _steadied(before: Motion | None, pose: np.ndarray, index: float) -> Motion:
-    """The filter of placed poses (D,) in the world a frame later; begun anew where there is none, or the chart has jumped."""
-    if before is None or np.abs(off := less(pose, before.place)).max() > _JUMP:
-        return Motion(pose, np.zeros(WIDTH), _LITTLE)
-    return before.towards(before.place + off, index)
