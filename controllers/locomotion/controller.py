@@ -113,7 +113,7 @@ class Locomotion(Controller):
                                np.zeros(ground.shape[:-1] + (4,), bool), memory, floor)
         state, _ = self.step(state, Intent(np.zeros(3)), 1 / 60)  # finds the pose
         memory = state.memory.copy()
-        memory["grip"], memory["bears"], memory["offset"], memory["offset_rate"] = 1.0, 1.0, 0.0, 0.0
+        memory["grip"], memory["bears"], memory["taut"], memory["offset"], memory["offset_rate"] = 1.0, 1.0, 1.0, 0.0, 0.0
         memory["raised"] = self.tables.legs.height - memory["points"][..., 1]
         for name in ("raised_rate", "bears_rate", "lent", "lent_rate", "rise", "rise_rate"):
             memory[name] = 0.0

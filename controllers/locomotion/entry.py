@@ -86,7 +86,7 @@ def entered(locomotion: Any, state: CharacterState, wish: float = 0.0) -> Charac
     aside, ahead = points[:, 0] - ground[0], points[:, 2] - ground[1]
     memory["points"] = np.stack([c * aside - s * ahead, points[:, 1], s * aside + c * ahead], -1)
     memory["standing"] = memory["grip"] = stands
-    memory["bears"] = memory["grip"][1::2]
+    memory["bears"] = memory["taut"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
     memory["left_at"] = points[1::2, [0, 2]]  # a foot in the air passes over what lies from here on, not from where nobody was
     memory["offset"] = memory["offset_rate"] = memory["offset_push"] = memory["raised"] = memory["raised_rate"] = 0.0

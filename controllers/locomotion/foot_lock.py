@@ -23,7 +23,7 @@ from .kernel import LABELS_AT
 from .last_stride import BESIDE, OFF, STAYS
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .root_motion import as_runner, sooner
-from .short_leg import STRAINED, give_way, lacks_kernel, nearer_kernel
+from .short_leg import STRAINED, give_way, lacks_kernel, lower_heel, nearer_kernel
 from .memory import WALK
 from .swing import SWING, swing_kernel, swing_progress
 from .swing_height import lead_up, led_up
@@ -125,6 +125,9 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         hip = legs.hip[foot]
         for j in range(hip, hip + 3):
             positions[j, 1] -= m.pelvis - lowered
+        if not even:
+            lower_heel(m, body, foot, hip, length[foot], m.pelvis - lowered, positions, orientations, ankle[foot], work)
+        nearer_kernel(positions[hip], ankle[foot], REACH * leg_length(body, hip), 0.0)
         nearer_kernel(positions[hip], ankle[foot], length[foot], firm[foot])
         leg_kernel(positions, orientations, hip, ankle[foot], work)
         toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)

@@ -31,6 +31,8 @@ EARLIER = 0.15
 """A foot that swings farther than the blend's does straightens its leg over this share of that, so that its knee brakes before it locks."""
 STRAINED = (0.35, 0.8)
 """A ball lets go, the more the farther its heel had to rise [rad] between these."""
+SLACKENS = 12.0
+"""A leg that is held straight is let go no faster than this [1/s]: with its ball, which may be free within two frames, its knee would snap by 23° in one."""
 TORN, LATE = 0.02, 1.7
 """A foot lets go that its leg is this much too short for [m], once it stood for long enough for its body to have come down
 to it: this many times as long as a swing after it left."""
@@ -40,7 +42,8 @@ to it: this many times as long as a swing after it left."""
 def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, dt, work):
     """A leg too short lifts its heel about the ball, as far as the foot stands on it or has just left it; what then is
     missing still, a foot that does not stand comes nearer, once the pelvis is where it will be (`nearer_kernel`). sinks: by how much the
-    pelvis is lower than in positions [m]. How much lower than there it must be for the leg's sake [m], how long the leg is [m], and how firmly its foot stands."""
+    pelvis is lower than in positions [m]. How much lower than there it must be for the leg's sake [m], how long the leg is [m], and how firmly its foot stands, or has
+    just stood."""
     a, grip = hip + 2, m.grip[2 * foot + 1]
     ball, axis, turned = work[0, 0], work[0, 1], work[1]
     for i in range(3):
@@ -76,7 +79,37 @@ def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, d
     for i in range(3):
         turned[0, i] = ankle[i]
     nearer_kernel(positions[hip], turned[0], length, firm)  # what does not stand asks less of the pelvis
-    return lacks_kernel(positions[hip], turned[0], reach), length, firm
+    m.taut[foot] = taut = max(grip, m.taut[foot] - SLACKENS * dt)
+    return lacks_kernel(positions[hip], turned[0], reach), length, taut * taut * (3.0 - 2.0 * taut)
+
+
+@kernel
+def lower_heel(m, body, foot, hip, length, sinks, positions, orientations, ankle, work):
+    """Let the heel of a foot that stands down again as far as the pelvis, lowered by `sinks` [m] after the heel had risen for its leg, `length` [m] long, has spared it that:
+    with both the knee would snap by 15° in a frame, as the leg comes to be long enough."""
+    grip = m.grip[2 * foot + 1]
+    if m.rise[foot] <= 0.0 or grip <= 0.0 or sinks <= 0.0:
+        return
+    a, ball, axis, flat, above, turned = hip + 2, work[0, 0], work[0, 1], work[0, 2], work[2, 0], work[1]
+    for i in range(3):
+        axis[i] = orientations[a, i, 0]
+        above[i] = positions[hip, i] + (sinks if i == 1 else 0.0)
+        ball[i] = ankle[i]
+        for k in range(3):
+            ball[i] += orientations[a, i, k] * body.offsets[a + 1, k]
+    tilt_kernel(orientations[a], axis, -m.rise[foot], turned)
+    for i in range(3):
+        flat[i] = ball[i]
+        for k in range(3):
+            flat[i] -= turned[i, k] * body.offsets[a + 1, k]
+    needed = min(m.rise[foot], heel_rise_kernel(above, ball, flat, axis, length))
+    spared = grip * grip * (3.0 - 2.0 * grip) * max(needed - heel_rise_kernel(positions[hip], ball, flat, axis, length), 0.0)
+    tilt_kernel(orientations[a], axis, -spared, turned)
+    for i in range(3):
+        ankle[i] = ball[i]
+        for k in range(3):
+            orientations[a, i, k] = turned[i, k]
+            ankle[i] -= turned[i, k] * body.offsets[a + 1, k]
 
 
 @kernel
