@@ -7,8 +7,7 @@ from .controller import Jump, Jumping
 from .crouching import Crouching
 from .motion import LIKE
 from .reach import BESIDE, HARD, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Refused
-from .starting import FRESH, RUNNING, SLOWLY, goes, start_of, stands, stayed
-from .walking import walks_to
+from .starting import FRESH, RUNNING, SLOWLY, goes, start_of, stands, stayed, walks_to
 from .warm_up import rehearse
 
 __all__ = [

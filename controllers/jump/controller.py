@@ -20,8 +20,7 @@ from .motion import STANDS, Carried, Plan, as_shown, between_kernel, carried, fa
 from .muscles import strongest
 from .prior import Prior
 from .reach import SETS_FEET, Found, How, Onward, Pieces, Reach, Refused, Seeking, meant, too_weak, whole
-from .starting import FEET, Jumping, along_of, astride, cramped, goes, landed, off_one, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
-from .walking import off_under
+from .starting import FEET, Jumping, along_of, astride, cramped, goes, landed, off_one, off_under, on_ground, on_its_floor, ready, rebounding, sets_feet, standing, start_of, stayed, turning
 
 LEVELS = 0.05
 """Who may land beside a place lands as high or low as it lies, to so much [m]."""
