@@ -116,7 +116,7 @@ class _Draft(Pushing):
                 break
         self._reach(wanted)
         for _ in range(CLEARINGS):
-            deep, down = depths(self.physique, self.air_roots, self.air, self.arc, self.planted, self.landing, self.start.slope, self.start.lands_on)
+            deep, down = depths(self.physique, self.air_roots, self.air, self.arc, self.planted, self.landing, self.start.slope, self.start.lands_on, self.start.ledge)
             if not deep.any():
                 break
             bent = vectors(self.air[:, self.legs].reshape(-1, 2, 4, 3, 3))[:, :, :EACH, 0]

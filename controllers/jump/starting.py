@@ -40,10 +40,12 @@ BETWEEN, HIGHEST = np.linspace(0.1, 1.0, 10), 2.0
 STEEPLY, DOWNHILL = 0.21, -0.05
 """Up what rises by more than the first a metre no leg pushes off in so short a time, and down it a foot that strikes carries him on; hands wait for no other down what
 falls by more than the second."""
-UNDER = 0.15
-"""His next foot finds floor no lower, and comes to no step higher, than this [m]."""
+STEPS = 0.4
+"""Onto what lies higher than this over his way, or lower [m], nobody leaps off the foot under him."""
 BACK = 0.8
 """Who goes back by more than this share of his speed goes backward."""
+UNDER = 0.15
+"""What lies higher or lower than this over the floor of who walks is no more of it [m]."""
 UP = 0.06
 """A foot higher than this over the floor is in the air [m]."""
 NEAR = 1e-6
@@ -168,7 +170,7 @@ def off_under(physique: Physique, start: Start, leap: Leap | None, state: Charac
     if leap is None or not walks_to(state, leap):
         return start, False
     place, waits = np.asarray(leap.place, float), False
-    if place.shape != (3,) or not np.isfinite(place).all() or not even(state, place, around):
+    if place.shape != (3,) or not np.isfinite(place).all() or not even(state, place, around, UP if leap.slack > 0.0 else STEPS):
         return start, False
     (level, slope), here, way = _ground(state, around), np.asarray(state.ground, float)[:2], goes(state)
     steep = float(slope @ way[[0, 2]]) / float(np.linalg.norm(way))
@@ -192,13 +194,15 @@ def off_under(physique: Physique, start: Start, leap: Leap | None, state: Charac
     return start, waits
 
 
-def even(state: CharacterState, place: np.ndarray, around: Sequence[Any]) -> bool:
-    """Whether a place (3,) lies on the level or on the slope on which somebody goes, no steep one, and nothing stands higher on the way there."""
+def even(state: CharacterState, place: np.ndarray, around: Sequence[Any], steps: float) -> bool:
+    """Whether a place (3,) lies on the level or on the slope on which somebody goes, no steep one, or no more than `steps` [m] over or under it, and nothing stands higher on the way there."""
     (floor, slope), here = _ground(state, around), np.asarray(state.ground, float)[:2]
     way = place[[0, 2]] - here
-    if abs(float(place[1]) - floor - float(slope @ way)) > UP or abs(float(slope @ way)) > STEEPLY * float(np.hypot(*way)):
+    up = float(place[1]) - floor - float(slope @ way)
+    if abs(up) > steps or abs(float(slope @ way)) > STEEPLY * float(np.hypot(*way)):
         return False
-    return not len(around) or all(floor_at(x, z, around, floor + float(slope @ (share * way)) + HIGHEST) < floor + float(slope @ (share * way)) + UP
+    high = floor + UP + (max(up, 0.0) if abs(up) > UP else 0.0)
+    return not len(around) or all(floor_at(x, z, around, floor + float(slope @ (share * way)) + HIGHEST) < high + float(slope @ (share * way))
                                   for share in BETWEEN for x, z in [here + share * way])
 
 

@@ -1,10 +1,15 @@
 """Who walks and leaps to a place does so off the foot that is under him, and keeps his speed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from gambol.controllers.body import forward_kinematics, sole_corners
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jumping
+from gambol.controllers.jump.motion import over_ledge
+from gambol.controllers.jump.reach.sweep import touch
 from gambol.game.scene import Box
 
 FPS = 60
@@ -52,3 +57,46 @@ def test_before_a_gap_he_takes_the_last_foot_that_finds_floor(person):
     assert isinstance(state.memory.memory, Jumping), state.refused
     made = state.memory.memory.plan
     assert not state.memory.memory.fault and made.take_off < 0.3
+
+
+def told(person, speed, up, beyond=0.35):
+    """The plan of one who walks so fast [m/s] at an edge up, or down [m], and is told a place so far beyond it [m]; and the boxes."""
+    low, high = Box((0.0, 0.0, 0.0), (8.0, 0.02, 60.0)), abs(up)
+    edge = 4.4
+    things = (low, Box((0.0, 0.5 * high, edge + 8.0 if up > 0.0 else edge - 8.0), (6.0, high, 16.0)))
+    floor, lands = (0.01, high) if up > 0.0 else (high, 0.01)
+    wish, state = np.array([speed, 0.0, 0.0]), person.start((0.0, 0.0, 0.0), floor)
+    place = np.array([0.0, lands, edge + beyond])
+    for _ in range(60):
+        state, _ = person.step(state, Intent(wish, around=things), 1 / FPS)
+    for _ in range(240):
+        state, _ = person.step(state, Intent(wish, leap=Leap(place), around=things), 1 / FPS)
+        if isinstance(state.memory.memory, Jumping):
+            break
+    assert isinstance(state.memory.memory, Jumping), state.refused
+    return state.memory.memory, things
+
+
+@pytest.mark.parametrize("speed", [1.2, 1.6])
+@pytest.mark.parametrize("up", [0.2, 0.35, -0.2, -0.35])
+def test_onto_a_step_and_off_one_he_leaps_as_on_the_level(person, speed, up):
+    """He sank over the foot that had just struck for half a second, had half his speed left as he came up, and a third as he came down, onto both feet."""
+    memory, things = told(person, speed, up)
+    made = memory.plan
+    assert not memory.fault and made.take_off < 0.36 and made.path.lands is not None
+    assert np.linalg.norm(made.path.velocity[[0, 2]]) / speed > 0.8
+    assert touch(person.parts["jump"].physique, made, things) is None
+
+
+def test_his_legs_clear_the_edge_that_he_comes_down_from(person):
+    """The leg that swings on lay in what he had leapt off, and the leap was refused."""
+    memory, things = told(person, 1.3, -0.35)
+    made, jump = memory.plan, person.parts["jump"]
+    start = replace(jump.start_of(person.start((0.0, 0.0, 0.0), 0.35)), single=0, bound=True)
+    edge = over_ledge(replace(start, feet=start.feet + [0.0, 0.0, 3.8, 0.0, 0.0]), np.array([0.0, 0.01, 4.75]), 0.35, things).ledge
+    assert edge[1] == pytest.approx(4.4, abs=0.03) and edge[3] == pytest.approx(-1.0, abs=0.03) and edge[4] == pytest.approx(0.34)
+    times = np.arange(made.touch_down - 0.1, made.touch_down + 0.12, 1 / 120)
+    poses = [made.at(time) for time in times]
+    corners = sole_corners(person.skeleton, *forward_kinematics(person.skeleton, np.array([p.root for p in poses]), np.array([p.rotations for p in poses])))
+    before = corners[..., 2] < 4.4
+    assert before.any() and corners[..., 1][before].min() > 0.34

@@ -17,6 +17,8 @@ from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
 from .sloped_feet import LEVEL, landing_feet, raised, rise, uphill
 from .planted_pose import stand_kernel
 
+NO_LEDGE = np.zeros(5)
+"""Where there is no edge."""
 FLAT = np.array([1.0, 0.0, 1.0])
 """What is left of a vector along the floor."""
 HEEL_UP, TOES_DOWN = 0.70, 0.30
@@ -53,7 +55,8 @@ class Start:
     and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
     pitched against that ground. lands_on: (2,) how it rises where it lands. levels: (2,) how high each foot stands over the lower one's floor [m], as astride an edge.
     stays: who walks wants to come to rest where he lands. cramped: beyond that is no room to run on. along: he goes slowly, aside or backward, and goes on so. bound: he
-    walks, and pushes off the foot under him as those do, but to a place.
+    walks, and pushes off the foot under him as those do, but to a place. ledge: (5,) the edge over which he leaps up or down: where it is x, z [m], which way (2,) along the floor it is higher, and
+    by how much [m]; zeros for none.
     """
 
     root: np.ndarray
@@ -80,6 +83,7 @@ class Start:
     cramped: bool = False
     along: bool = False
     bound: bool = False
+    ledge: np.ndarray = field(default_factory=lambda: NO_LEDGE)
 
     def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
         """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""

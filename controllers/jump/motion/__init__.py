@@ -15,6 +15,7 @@ from .ground_kernels import FREE, ground_kernel
 from .going_slowly import LIKE, Carried, carried
 from .grounded import grounded
 from .hit import struck
+from .ledge import over_ledge
 from .lying import BONES, FEET, TOUCHES, grounded_poses, places, sole_places
 from .path_estimate import SPINS, Course, Path, path
 from .plan import Plan, between_kernel
@@ -26,6 +27,6 @@ from .thrust import Push, push
 
 __all__ = [
     "BONES", "CLEARS", "FADE", "Carried", "FEET", "FREE", "HEEL", "LASTS", "LIKE", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STANDS", "STRAIGHTEST", "Shown", "as_shown",
-    "between_kernel", "capsule_places", "carried", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "hangs", "lifted", "lifts", "lowest", "moments", "near", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "between_kernel", "capsule_places", "carried", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "hangs", "lifted", "lifts", "lowest", "moments", "near", "over_ledge", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sole_places", "spread", "steps_over", "struck", "swivels", "tumbled",
 ]

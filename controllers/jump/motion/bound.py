@@ -21,8 +21,8 @@ RISES = 0.04
 """He rises so much at least [m], at standard height, and higher than where he lands by as much."""
 LOWER = 0.08
 """So much lower than he leaves he lands on level ground [m], at standard height."""
-USUAL, MOST = 2.1, 1.4
-"""Who leaves upward faster than the first [m/s], on Earth, at standard height, pushes so many times longer, up to the second."""
+USUAL, MOST = 2.1, 1.6
+"""Who leaves upward faster than the first [m/s], on Earth, at standard height, pushes longer by the square of that, up to the second: as hard as no leg pushes, else."""
 UNTIL, EACH = 0.1, 0.03
 """He leaps no later than this past the foot [m], at standard height; and the walk until there is looked at so often [m]."""
 LEAVES, MISSES = (0.85, 0.9, 1.38), (0.05, 0.09)
@@ -45,7 +45,7 @@ def flies(far: float, up: float, velocity: np.ndarray, size: float, gravity: flo
 
 def longer(rises: float, size: float, gravity: float) -> float:
     """By what the push of somebody of a size over an adult's takes longer who leaves upward so fast [m/s]."""
-    return min(max(rises / (USUAL * math.sqrt(size * gravity / 9.81)), 1.0), MOST)
+    return min(max(rises / (USUAL * math.sqrt(size * gravity / 9.81)), 1.0)**2, MOST)
 
 
 def changes(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, now: bool = True) -> float:

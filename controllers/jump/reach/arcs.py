@@ -12,7 +12,7 @@ import numpy as np
 from ...contract import level
 from ...navigation import floor_at, gap, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
-from ..motion import Path, grounded, path
+from ..motion import Path, grounded, over_ledge, path
 from ..prior import Prior
 from .feasibility import HARD, PACE, begins, fault, meant
 from .seeking import PATH, Pieces, whole
@@ -63,10 +63,12 @@ class Arcs:
     def __init__(self, physique: Physique, gravity: np.ndarray, prior: Prior):
         self.physique, self.gravity, self.prior = physique, gravity, prior
 
-    def onto(self, start: Start, place: np.ndarray, around: Sequence[Any]) -> Start:
-        """The same start of one who lands at a place (3,), as the ground rises there."""
+    def onto(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> Start:
+        """The same start of one who leaps off a floor [m] to a place (3,), as the ground rises there; of a walker, and over which edge."""
         slope = slope_at(place[0], place[2], around, place[1] + FLUSH) if len(around) else LEVEL
-        return replace(start, lands_on=slope) if slope.any() or start.lands_on.any() else start
+        if slope.any() or start.lands_on.any():
+            return replace(start, lands_on=slope)
+        return over_ledge(start, place, floor, around) if start.bound and not start.slope.any() else start
 
     def footing(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any]) -> str:
         """Why nobody can stand at a place (3,), if so."""
@@ -168,7 +170,7 @@ class Arcs:
     def surveyed(self, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any],
                   heights: Sequence[float]) -> Pieces[tuple[Path, str]]:
         """What `survey` gives, in pieces."""
-        start = self.onto(start, place, around)
+        start = self.onto(start, place, floor, around)
         why = self.footing(start, place, floor, around)
         if why:
             return self.path(start, place, floor, airtime), why

@@ -88,7 +88,7 @@ class Reach(Arcs):
     def planned(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
                 around: Sequence[Any], tries: int | None = None) -> Pieces[tuple[Found | None, str]]:
         """What `attempt` gives, in pieces, and along which arc."""
-        start = self.onto(start, place, around)
+        start = self.onto(start, place, floor, around)
         why = self.footing(start, place, floor, around)
         if why:
             return None, why
@@ -114,7 +114,7 @@ class Reach(Arcs):
         found = None if known is None else known[0][0]
         if found is not None and found.arc.how == how:
             return found
-        start = self.onto(start, place, around)
+        start = self.onto(start, place, floor, around)
         if self.footing(start, place, floor, around):
             return None
         arc = self.arc(start, place, floor, around, how)
@@ -140,7 +140,7 @@ class Reach(Arcs):
 
     def touching(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None, around: Sequence[Any] = ()) -> Touch | None:
         """What the usual jump to a place (3,) would touch, and how the body would lie in it; None if nothing, or if there is no such jump."""
-        start = self.onto(start, place, around)
+        start = self.onto(start, place, floor, around)
         arc = whole(following(self.arcs(start, place, floor, airtime, around)))
         assert arc is not None  # there is always one
         way = arc.path
