@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, RotationSpline, Slerp
 
 from .brief import brief
@@ -71,6 +70,8 @@ class Clip:
         old = np.arange(len(self)) * self.frame_time
         new = np.arange(int(np.floor(self.duration * fps + 1e-6)) + 1) / fps
         new = np.minimum(new, old[-1])
+        if smooth:
+            from scipy.interpolate import CubicSpline  # no game that plays asks for it, and it takes a while to import
         root = CubicSpline(old, self.root)(new) if smooth else np.stack([np.interp(new, old, self.root[:, i]) for i in range(3)], -1)
         between = RotationSpline if smooth else Slerp
         joints = [between(old, Rotation.from_quat(self.quaternions[:, j]))(new).as_quat() for j in range(len(self.skeleton))]

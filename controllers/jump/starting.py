@@ -40,7 +40,7 @@ BETWEEN, HIGHEST = np.linspace(0.1, 1.0, 10), 2.0
 STEEPLY, DOWNHILL = 0.21, -0.05
 """Up what rises by more than the first a metre no leg pushes off in so short a time, and down it a foot that strikes carries him on; hands wait for no other down what
 falls by more than the second."""
-STEPS = 0.4
+STEPS = 0.36
 """Onto what lies higher than this over his way, or lower [m], nobody leaps off the foot under him."""
 BACK = 0.8
 """Who goes back by more than this share of his speed goes backward."""
