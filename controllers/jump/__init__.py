@@ -7,10 +7,10 @@ from .controller import Jump, Jumping
 from .crouching import Crouching
 from .motion import LIKE
 from .reach import BESIDE, HARD, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Refused
-from .starting import FRESH, RUNNING, SLOWLY, goes, start_of, stands, stayed, walks_to
+from .starting import FRESH, RUNNING, SLOWLY, goes, leaves_under, start_of, stands, stayed, walks_to
 from .warm_up import rehearse
 
 __all__ = [
-    "BESIDE", "Crouching", "FRESH", "GRAVITY", "HARD", "LIKE", "MOMENTARY", "PACE", "RUNNING", "SETS_FEET", "SLOWLY", "TOO_NEAR", "Jump", "Jumping", "Physique", "Refused", "goes", "mass_of", "rehearse", "stands", "start_of",
+    "BESIDE", "Crouching", "FRESH", "GRAVITY", "HARD", "LIKE", "MOMENTARY", "PACE", "RUNNING", "SETS_FEET", "SLOWLY", "TOO_NEAR", "Jump", "Jumping", "Physique", "Refused", "goes", "leaves_under", "mass_of", "rehearse", "stands", "start_of",
     "stayed", "walks_to",
 ]

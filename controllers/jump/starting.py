@@ -165,13 +165,19 @@ def walks_to(state: CharacterState, leap: Leap | None) -> bool:
     return leap is not None and leap.place is not None and leap.airtime is None and leap.on is None and RUNNING < pace < SLOWLY[1] and ahead > AHEAD * pace
 
 
+def leaves_under(state: CharacterState, leap: Leap | None, around: Sequence[Any]) -> bool:
+    """Whether a leap is one of somebody who walks to a place that he can leap to off the foot under him: no higher or lower than scripts, or hands, have it."""
+    if leap is None or not walks_to(state, leap):
+        return False
+    place = np.asarray(leap.place, float)
+    return place.shape == (3,) and bool(np.isfinite(place).all()) and even(state, place, around, UP if leap.slack > 0.0 else STEPS)
+
+
 def off_under(physique: Physique, start: Start, leap: Leap | None, state: CharacterState, gravity: float, around: Sequence[Any]) -> tuple[Start, bool]:
     """The same start of somebody who walks to a place, off the foot under him if this is the best moment; and whether that is to come. gravity: [m/s²] downward."""
-    if leap is None or not walks_to(state, leap):
+    if leap is None or not leaves_under(state, leap, around):
         return start, False
     place, waits = np.asarray(leap.place, float), False
-    if place.shape != (3,) or not np.isfinite(place).all() or not even(state, place, around, UP if leap.slack > 0.0 else STEPS):
-        return start, False
     (level, slope), here, way = _ground(state, around), np.asarray(state.ground, float)[:2], goes(state)
     steep = float(slope @ way[[0, 2]]) / float(np.linalg.norm(way))
     if leap.slack > 0.0 and steep < DOWNHILL:

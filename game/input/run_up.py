@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Leap, but
-from gambol.controllers.jump import MOMENTARY, walks_to
+from gambol.controllers.jump import MOMENTARY, leaves_under
 from gambol.controllers.navigation import STEP, floor_at, in_world, room
 from gambol.controllers.navigation.thinking import Thought
 from gambol.controllers.supervisor import Asked
@@ -140,7 +140,8 @@ def leaps(controller: Any, state: CharacterState, asks: Asks, around: Sequence[A
             why = controller.refusal(state, intent)
             if not why:
                 return number + 1, ""
-            refused = None if intent.leap.slack == 0.0 and walks_to(state, intent.leap) else Asked("", intent, state)  # who is told a place may leap in the next moment
+            soon = intent.leap.slack == 0.0 and leaves_under(state, intent.leap, around)  # he may leap in the next moment
+            refused = None if soon else Asked("", intent, state)
             if why not in MOMENTARY and (place is None or intent.leap.place is not None and np.array_equal(intent.leap.place, place)):
                 told = why
         state, _ = controller.step(state, but(intent, leap=None, aim=intent.leap or intent.aim), dt)
