@@ -116,3 +116,62 @@ def test_packets_that_are_late_by_as_much_as_they_are_apart_are_never_flown_off_
             k += 1
         off = max(off, float(np.linalg.norm(line.at(now) - 3.0 * now - hand(now))))
     assert 0.03 < off < 0.8
+
+
+def stalled(rate, unrest, hold, clock, seed=2):
+    """What is seen of a network that holds packets up for `hold` [s] about once a second and then hands them over at once; how far off [m], and the pace."""
+    rng, sent = np.random.default_rng(seed), np.arange(0.0, SECONDS, 1.0 / rate)
+    sent = sent[rng.random(len(sent)) >= 0.02]
+    arrived = sent + LATENCY + np.abs(rng.normal(0.0, unrest, len(sent)))
+    moment = 1.0
+    while moment < SECONDS:
+        moment += rng.uniform(0.7, 1.3)
+        held = (arrived >= moment) & (arrived < moment + hold)
+        arrived[held] = moment + hold + 2e-4 * np.arange(held.sum())
+    arrived = np.maximum.accumulate(arrived)
+    line, times, seen, k = Timeline(), np.arange(3.0, SECONDS - 0.1, 1 / 60), [], 0
+    for now in times:
+        while k < len(sent) and arrived[k] <= now:
+            line.heard(arrived[k], hand(sent[k]), sent[k] if clock else None)
+            k += 1
+        seen.append(line.at(now))
+    off = np.linalg.norm(seen - hand(times - LATENCY - unrest * np.sqrt(2 / np.pi) - 1.0 / rate), axis=-1)
+    return off, line.period
+
+
+@pytest.mark.parametrize("clock", [False, True])
+@pytest.mark.parametrize("rate", [60, 90, 144])
+@pytest.mark.parametrize("hold", [0.08, 0.14, 0.3])
+def test_packets_that_were_held_up_and_come_at_once_are_told_apart(hold, rate, clock):
+    """Counted as so many that were lost, they would be from times to come: the pace is kept, and most moments are met."""
+    off, period = stalled(rate, 0.002, hold, clock)
+    assert period == pytest.approx(1.0 / rate, rel=0.02)
+    assert np.median(off) < 0.004
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("rate", [60, 90, 144])
+def test_late_packets_are_not_taken_for_missing_ones(rate, seed):
+    """Late by as much as they are apart, of the first ones, too: 144 a second were thought to be 185, a fifth of which was lost."""
+    _, _, period = played(rate, 0.008, 0.02, False, seed)
+    assert period == pytest.approx(1.0 / rate, rel=0.05)
+
+
+def test_packets_that_came_twice_or_by_a_clock_that_is_too_coarse_are_harmless():
+    line = Timeline()
+    for k in range(120):
+        for again in range(max(k - 12, 0), k + 1, 6):  # the same one once more, and older ones
+            line.heard(k / 60, np.array([again / 60, 0.0, 0.0]), 3.0 + again / 60)
+    assert line.at(2.0)[0] == pytest.approx(2.0 - 1 / 60, abs=5e-3)
+    coarse = Timeline()
+    for k in range(60):
+        coarse.heard(k / 60, np.array([k / 60, 0.0, 0.0]), 1e6 + k // 8 / 10)
+        assert coarse.at(k / 60)[0] == pytest.approx(k / 60, abs=0.05)
+
+
+def test_a_sender_may_begin_to_tell_its_clock_and_cease():
+    line = Timeline()
+    for k in range(360):
+        line.heard(k / 60, np.array([k / 60, 0.0, 0.0]), 1000.0 + k / 60 if 120 <= k < 240 else None)
+        if k > 30:
+            assert line.at(k / 60)[0] == pytest.approx((k - 1) / 60, abs=0.02)
