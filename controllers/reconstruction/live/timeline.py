@@ -26,8 +26,26 @@ KEPT = 16
 AHEAD = 3.0
 """A packet that is late is waited for along the tracker's last motion for so many times the pace."""
 MENDED = 0.02
-"""Time constant [s] in which what a late packet changes comes in."""
+"""Time constant [s] in which what a late packet changes comes in at least …"""
+HURRY = 2.5
+"""… and no faster than at this speed [m/s]."""
 _NOWHERE, _UNTURNED = np.full(3, np.nan), np.full(4, np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class _Mend:
+    """What a packet changed at a moment [s] of a place (3,) [m] and velocity [m/s], and how fast the place's fades [s]."""
+
+    moment: float
+    off: np.ndarray
+    rate: np.ndarray
+    fading: float
+
+    def left(self, time: float) -> np.ndarray:
+        """What is left of it (3,) at a time [s]; it may be asked of a moment before."""
+        since = max(time - self.moment, 0.0)
+        slow = since / self.fading
+        return math.exp(-slow) * (1.0 + slow) * self.off + math.exp(-since / MENDED) * since * self.rate
 
 
 @dataclass(eq=False)
@@ -42,7 +60,7 @@ class Timeline:
     _known: list[tuple[float, int, np.ndarray, np.ndarray]] = field(default_factory=list)  # stamps, count, places, turns
     _count: int = 0
     _stands: bool = False  # whether the sender's clock was seen to stand, or to be too coarse: it is not heard
-    _mend: tuple[float, np.ndarray, np.ndarray] = (-math.inf, np.zeros(3), np.zeros(3))  # when [s], of place and velocity
+    _mend: _Mend | None = None
 
     @property
     def period(self) -> float:
@@ -63,7 +81,7 @@ class Timeline:
         if time - self.last > silence or broken:
             self._known.clear()
             pace.silent(math.inf if broken else time - self.last)
-            self._mend = (-math.inf, np.zeros(3), np.zeros(3))
+            self._mend = None
         step = 1e-3
         waited = self._paced and (pace.unsure or time > pace.arrival(self._known[-1][0]) + 1.1 * self.period)
         shown = (self.at(time), self.at(time + step)) if waited else None
@@ -76,9 +94,9 @@ class Timeline:
             insort(self._known, (stamp, self._count, place, turn))
             del self._known[:-KEPT]
         if shown is not None:
-            self._mend = (-math.inf, np.zeros(3), np.zeros(3))
+            self._mend = None
             off, later = shown[0] - self.at(time), shown[1] - self.at(time + step)
-            self._mend = time, off, (later - off) / step
+            self._mend = _Mend(time, off, (later - off) / step, max(MENDED, float(np.linalg.norm(off)) / (math.e * HURRY)))
 
     def turned(self, time: float, turn: np.ndarray) -> None:
         """Take a turn (4,) that arrived in a packet of its own: of the newest place, if that was just heard without one."""
@@ -100,11 +118,7 @@ class Timeline:
         """Where the tracker was (3,) one packet before a time [s]: the newest place while the pace is not known, NaN of none."""
         if not self._paced:
             return self.newest
-        since, off, rate = max(time - self._mend[0], 0.0), self._mend[1], self._mend[2]  # it may be asked of a moment before
-        if since >= 12.0 * MENDED:
-            return self._through(time)
-        fading = math.exp(-since / MENDED)
-        return self._through(time) + fading * (off + (rate + off / MENDED) * since)
+        return self._through(time) if self._mend is None else self._through(time) + self._mend.left(time)
 
     def turned_at(self, time: float) -> np.ndarray:
         """How the tracker was turned (4,) one packet before a time [s]: on the shortest way between two packets' turns."""
