@@ -38,8 +38,10 @@ RESTING = 0.95
 """What is left of the body's velocity a frame later where no tracker is seen."""
 ACCELERATION = 10.0
 """How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
-ROUGH = 0.003
+ROUGH = 0.002
 """How unsteady poses are even where trackers are not [m, rad]."""
+WAVERING = 0.006
+"""How much what the network expects wavers [m, rad]."""
 STEPS, TOLERANCE = 6, 1e-4
 """Of the solver: steps at most, and the share of the energy below which a gain ends them."""
 BEGINNINGS = 8
@@ -58,7 +60,7 @@ class Remembered:
 
     places (SPAN, S, 3) [m], turns (SPAN, S, 3, 3): what slots said in the world, newest first; NaN where nothing. turning: (n,) bool,
     which trackers have told a turn. recent: (T, n, 3) raw points. points, shown: filtered. standing: (4,) how probable it is that heels and balls
-    stand. feet: where they do.
+    stand. feet: where they do. expected: the pose that the network expects, placed in the world and filtered; known: what slots told then.
     """
 
     pose: np.ndarray
@@ -72,6 +74,8 @@ class Remembered:
     shown: Motion
     standing: np.ndarray
     feet: Feet
+    expected: Motion | None = None
+    known: bytes = b""
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +176,7 @@ class Trackers:
         points, turns = np.full((len(known), 3), np.nan), np.full((len(known), 3, 3), np.nan)
         points[known], turns[known] = memory.places[0, self._slots[known]], memory.turns[0, self._slots[known]]
         points[self.controls.offsets.any(-1)] = np.nan
-        return self._solved(but(memory, off=np.zeros(WIDTH)), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
+        return self._solved(but(memory, off=np.zeros(WIDTH), expected=None), points, turns, BLUR * noise(memory.recent) if self.steady else 0.0)[1]
 
     def exchanged(self, memory: Remembered, i: int, j: int) -> Remembered:
         """The memory in which two trackers had each other's number all the time; the same one where they have no slots."""
@@ -183,7 +187,7 @@ class Trackers:
         slots[[a, b]], order[[i, j]] = (b, a), (j, i)
         points = memory.points and but(memory.points, place=memory.points.place[order], change=memory.points.change[order])
         return but(memory, places=memory.places[:, slots], turns=memory.turns[:, slots], turning=memory.turning[order],
-                       recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH))
+                       recent=memory.recent[:, order], points=points, off=np.zeros(WIDTH), expected=None)
 
     def _followed(self, memory, points, turns, blur):
         """The memory a frame later, but for what is shown."""
@@ -218,6 +222,8 @@ class Trackers:
         inputs, ground = np.empty(INPUTS, np.float32), np.empty(3)
         view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
+        known = here.tobytes() + turned.tobytes()
+        calm, expected = self._calmed(memory, known, expected, ground)
         mean = expected + FADING * memory.off
         goals, spun, hold, keep = np.empty_like(points), np.empty_like(turns), np.empty(len(points)), np.empty(len(points))
         goals_kernel(points, turns, ground, 1.0 / (EXACT_PLACE ** 2 + blur ** 2), EXACT_TURN ** -2.0, goals, spun, hold, keep)
@@ -227,7 +233,26 @@ class Trackers:
                             REFERENCE, FIRST, joints, beside, goals, hold, spun, keep, STEPS, TOLERANCE, frame,
                             np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         seen_kernel(frame, ground, _WORLD, pose)
-        return but(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing), energy
+        return but(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing, expected=calm, known=known), energy
+
+    def _calmed(self, memory, known, expected, ground):
+        """What the network expects (D,), seen from ground (3,), without what wavers of it: in the world, as filtered, and seen from ground again.
+
+        known: what slots tell now; where that changes the network expects something else at once.
+        """
+        if not self.steady:
+            return None, expected
+        place, seen = np.empty(WIDTH), np.empty(WIDTH)
+        seen_kernel(expected, ground, _WORLD, place)
+        calm = memory.expected
+        if calm is None or np.abs(less(place, calm.place)).max() > _JUMP:
+            calm = Motion(place, np.zeros(WIDTH), _LITTLE)
+        elif known != memory.known:
+            calm = but(calm, place=place)
+        else:
+            calm = calm.towards(calm.place + less(place, calm.place), ACCELERATION * self.dt ** 2 / WAVERING)
+        seen_kernel(calm.place, _WORLD, ground, seen)
+        return calm, seen
 
     def _planted(self, memory, shown, points):
         """The memory with feet as they stand, and the pose to show. shown: (D,) the placed pose without. points: (n, 3) of trackers, NaN where not seen."""
