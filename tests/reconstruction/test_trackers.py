@@ -143,6 +143,42 @@ def test_feet_that_stand_carry_nobody_along(walk, monkeypatch):
     assert np.linalg.norm(held[0] - loose[0], axis=-1)[:, above].max() < 0.03
 
 
+class Wavering:
+    """A network whose expectations of legs waver by `by` [rad] from one frame to the next."""
+
+    legs = np.array([3 * k + i for k, joint in enumerate(JOINTS) if SKELETON.names[joint].endswith("Leg") for i in range(3)])
+
+    def __init__(self, network, by):
+        self.network, self.by = network, by
+
+    def __getattr__(self, name):
+        return getattr(self.network, name)
+
+    def predict(self, inputs):
+        expected, standing = self.network.predict(inputs)
+        self.by = -self.by
+        expected = expected.copy()
+        expected[self.legs] += self.by
+        return expected, standing
+
+
+def test_what_the_network_expects_may_waver(walk):
+    """Of what alternates from frame to frame, in legs that no tracker tells of, half does not reach the solve."""
+    _, _, positions, orientations = walk
+    controls = parse(HEAD_AND_HANDS, SKELETON)
+    solved = []
+    for by in (0.0, 0.02):
+        method = Trackers(Wavering(shipped(), by), controls)
+        memory = method.begin(*method.find(positions[0, controls.joints], None, orientations[0, controls.joints]))
+        poses = []
+        for now in range(90):
+            memory, _ = method.step(memory, positions[now, controls.joints], orientations[now, controls.joints])
+            poses.append(memory.pose)
+        solved.append(np.array(poses)[30:])
+    off = (solved[1] - solved[0])[:, Wavering.legs]
+    assert np.abs(off).max() < 0.5 * 0.02
+
+
 def test_lost_trackers_leave_no_bit_and_no_leap(walk):
     points = walk[2][:90, parse("6", SKELETON).joints].copy()
     points[40:70, 2] = np.nan

@@ -191,12 +191,15 @@ class Trackers:
 
     def _followed(self, memory, points, turns, blur):
         """The memory a frame later, but for what is shown."""
-        if not (np.isfinite(points).all(-1).any() or np.isfinite(turns).all((-1, -2)).any()):
-            told = self._told(memory, points, turns)
-            pose = memory.pose + RESTING * less(memory.pose, memory.before)
-            pose[:ANGLES] = np.clip(pose[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
-            return but(told, pose=pose, before=memory.pose, standing=_NONE)
-        return self._solved(self._told(memory, points, turns), points, turns, blur)[0]
+        placed = np.isfinite(points).all(-1).any()
+        coasting = memory.pose + RESTING * less(memory.pose, memory.before)
+        if not (placed or np.isfinite(turns).all((-1, -2)).any()):
+            coasting[:ANGLES] = np.clip(coasting[:ANGLES], self.network.lower, self.network.upper)  # no knee swings on beyond straight
+            return but(self._told(memory, points, turns), pose=coasting, before=memory.pose, standing=_NONE)
+        after = self._solved(self._told(memory, points, turns), points, turns, blur)[0]
+        if not placed:  # turns alone don't tell where one goes
+            after.pose[GROUND[:2]] = coasting[GROUND[:2]]
+        return after
 
     def _told(self, memory, points, turns):
         """The memory with what trackers say now."""
@@ -222,7 +225,7 @@ class Trackers:
         inputs, ground = np.empty(INPUTS, np.float32), np.empty(3)
         view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
-        known = here.tobytes() + turned.tobytes()
+        known = here[0].tobytes() + turned[0].tobytes()
         calm, expected = self._calmed(memory, known, expected, ground)
         mean = expected + FADING * memory.off
         goals, spun, hold, keep = np.empty_like(points), np.empty_like(turns), np.empty(len(points)), np.empty(len(points))
