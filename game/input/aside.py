@@ -27,6 +27,8 @@ GRID = 0.1
 """The heading in which he lands lies on so coarse a grid [rad], lest another leap be asked in each step that he turns."""
 ROOM = 0.25, 1.2
 """He begins to turn as much sooner as he goes in the first [s], and in the time that turning as fast as the second takes [rad/s]."""
+PASSES = 0.9, 2.5
+"""Who has it farther aside than the first [rad] turns to it as soon as he could be there within the second [s] and a leap: else he would pass it."""
 SHARES, WALKS, RUNS = (1.0, 0.9, 0.8, 1.1), (1.3, 1.1), 1.6
 """He goes to it as fast as he does, or so many times as fast, or, if he is faster than the third [m/s], at a walk [m/s]; or leaps at once, and turns in the air: whichever leads him off soonest."""
 SOON, LATER, ENOUGH = 0.36, 0.8, 1.1
@@ -71,9 +73,10 @@ def ahead(far: float, pace: float) -> float:
     return min(AHEAD[0] + far / max(AHEAD[1], 0.8 * pace), AHEAD[2])
 
 
-def room(state: CharacterState, way: np.ndarray) -> float:
-    """How far [m] before he may leap somebody begins to turn to a place a way (2,) off."""
-    return math.hypot(state.velocity[0], state.velocity[2]) * (ROOM[0] + abs(askew(state, way)) / ROOM[1])
+def room(state: CharacterState, way: np.ndarray, pace: float) -> float:
+    """How far [m] before he may leap somebody begins to turn to a place a way (2,) off, who is to go so fast [m/s]: at the latest before he passes it."""
+    off = abs(askew(state, way))
+    return pace * PASSES[1] if off > PASSES[0] else math.hypot(state.velocity[0], state.velocity[2]) * (ROOM[0] + off / ROOM[1])
 
 
 def bent(state: CharacterState, pace: float, way: np.ndarray) -> Intent:

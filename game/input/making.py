@@ -148,13 +148,13 @@ class Making:
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
         runs = move.runs and not self.aside.stops
         if runs:
-            if (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
+            if not self.turns and (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
                 return replace(self, passed=self.asked > 0 and _straight(move)), intent
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
             usual = AHEAD[0] + AHEAD[1] * speed * jump.slow + STRIDE * walks_to(state, leap)
             ready = self.run_up.halt is not None or far <= (usual if jump.within is None else jump.within)
             leads = self._leads(move, jump, far) and (self.turns or beside(state, way)) and state.active == "locomotion" and self.run_up.halt is None
-            if leads and (ready or far <= usual + room(state, way)):
+            if leads and (ready or far <= usual + room(state, way, pace_of(move))):
                 if far < NEAREST and self.aside.steps < 0:
                     return replace(self, aside=Known(stops=True), turns=True), bent(state, 0.0, way)
                 self, intent = replace(self, turns=True), bent(state, self.aside.pace or pace_of(move), way)
