@@ -193,7 +193,7 @@ def off_under(physique: Physique, start: Start, leap: Leap | None, state: Charac
     contacts = np.asarray(state.contacts).reshape(2, 2)
     for side in np.flatnonzero(contacts.any(1)):
         off = replace(start, single=int(side), along=True, bound=True)
-        now, later = moments(physique, off, way, place, floor(start.feet[side]), gravity, finds, steep, leap.slack > 0.0)
+        now, later = moments(physique, off, way, place, floor(start.feet[side]), gravity, finds, steep, leap.slack > 0.0, float(state.velocity[1]))
         if now and contacts[side].all():
             return off, True
         waits = waits or later

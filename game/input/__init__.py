@@ -5,7 +5,7 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from .aim import FARTHEST, MOVING, NEAR, PATIENCE, Aim
+from .aim import BACK, FARTHEST, MOVING, NEAR, PATIENCE, Aim
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
                       player_of, wheel_wish, wishes)
@@ -22,7 +22,7 @@ from .straight_ahead import agility, before, cramped, even_ahead, headlong, onto
 from .wish import STEPS, Wish, in_view, push
 
 __all__ = [
-    "AHEAD", "BRAKES", "DEFAULT", "HOLDING", "JOINING", "MOUSE", "MOVING", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
+    "AHEAD", "BACK", "BRAKES", "DEFAULT", "HOLDING", "JOINING", "MOUSE", "MOVING", "PAD_BUTTONS", "PLAYERS", "REWOUND", "STEERING", "STEPS", "THINKS", "WAITED", "Aim", "Binding",
     "Bindings", "Command", "FARTHEST", "Jump", "Keyboard", "Mouse", "Move", "NEAR", "PATIENCE", "RUNS", "Pace", "Pilot", "RunUp", "Script", "Sticks", "Wish", "agility", "aloft", "as_toml", "at_hand",
     "before", "braked", "button_label", "cramped", "dead_zone", "drivers", "even_ahead", "headlong", "help_sheet", "in_view", "jumping", "key_label", "landing", "last_chance", "leaps", "leaving", "load", "mode_of", "mouse_wish",
     "onto", "pad_held", "pad_pressed", "pad_wish", "player_of", "push", "ring", "rises", "shared", "user_file", "wheel_wish", "wishes",

@@ -70,6 +70,8 @@ LOOKED = 0.2
 """Who holds the button for longer [s] looks where to jump."""
 TAPS, COMES = 0.2, 0.5
 """Who holds the button for less than the first [s] leaps as he goes; a foot that sends him comes within the second [s], for which he neither brakes nor turns back."""
+ASIDE, BACK, ROUND_IN = 0.44, -0.26, 0.24
+"""Who goes, and holds his stick farther aside of that than the first [rad], but not back, by a cosine less than the second, turns there first; he may wait by so much of his patience for that [s]."""
 RESTS, FALLING = 0.12, 0.1
 """A stick that is tilted less than the first, or by so much less than a step before, was let go: thumbs take some steps for it."""
 ELSEWHERE, TILTED = math.radians(60.0), 0.5
@@ -108,7 +110,7 @@ class Aim:
     rests: whether the stick that moved him was let go, so that he is to come to rest where he lands; tilt: how far it is tilted.
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
     skips: he went slowly enough for that as he let go. stick: where (2,) in the world it was held as the button was let go, nowhere since it came to rest.
-    led: for so long [s] the stick, which led him to what holds him up, pushes a ring that lies ahead already no farther. backs: he found that he would hit what he stands before, and goes back from it.
+    steers: where (2,) in the world it is held now. led: for so long [s] the stick, which led him to what holds him up, pushes a ring that lies ahead already no farther. backs: he found that he would hit what he stands before, and goes back from it.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -125,6 +127,7 @@ class Aim:
     even: bool = False
     skips: bool = False
     stick: tuple[float, float] = (0.0, 0.0)
+    steers: tuple[float, float] = (0.0, 0.0)
     led: float = 0.0
     backs: bool = False
 
@@ -146,7 +149,8 @@ class Aim:
         rests = tilt < RESTS or tilt < self.tilt - FALLING or self.rests and tilt < self.tilt
         stick = in_view(wish.move, camera_yaw)
         led = self.led if self.aiming else 0.0 if ahead is None else math.hypot(*ahead) / PUSH
-        told = replace(self, offset=offset if ahead is None or self.aiming else ahead, led=led, rests=rests, tilt=tilt, even=even, stick=stick if self.aiming else self.stick if tilt >= RESTS else (0.0, 0.0))
+        told = replace(self, offset=offset if ahead is None or self.aiming else ahead, led=led, rests=rests, tilt=tilt, even=even, steers=stick,
+                       stick=stick if self.aiming else self.stick if tilt >= RESTS else (0.0, 0.0))
         if wish.jump:
             return told._aimed(wish, camera_yaw, state, stays, farthest, dt)
         if self.aiming:
@@ -167,6 +171,9 @@ class Aim:
         if aloft and self.moving and self.waiting > 0.0:  # it stays ahead of who comes down first
             offset = _ring(state)
             return replace(self, offset=offset, place=(float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]), course=course_of(state))
+        if told._turns(now):  # the ring stays ahead of who turns to where he is led
+            offset = _ring(now)
+            return replace(told, waiting=self.waiting - TURNS * dt, offset=offset, place=(float(now.ground[0]) + offset[0], float(now.ground[1]) + offset[1]), course=course_of(now))
         goes = _pace(now)
         hits = not self.moving and HITS in state.refused
         slows = not self.moving and goes > RESTED and (hits or state.refused.startswith(PACE))  # once he rests he is asked again
@@ -178,7 +185,7 @@ class Aim:
             return Aim()
         pace = 0.0 if aloft else LONGER if self._goes(state) else TURNS if sets or not self.moving and state.seeks or stopped or cramped or self._askew(state) else 1.0
         gone = self._gone_round(state)
-        return replace(gone, waiting=self.waiting - pace * dt, offset=told.offset, place=self._there(state) if stays else gone.place, rests=told.rests, tilt=told.tilt, even=told.even, stick=told.stick)
+        return replace(gone, waiting=self.waiting - pace * dt, offset=told.offset, place=self._there(state) if stays else gone.place, rests=told.rests, tilt=told.tilt, even=told.even, stick=told.stick, steers=told.steers)
 
     def _aimed(self, wish: Wish, camera_yaw: float, state: CharacterState, stays: bool, farthest: float, dt: float) -> Aim:
         """The button is held: the ring goes ahead of who moves, and with the stick of who stands."""
@@ -194,7 +201,7 @@ class Aim:
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, course=course_of(state), even=self.even, led=self.led)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, steers=self.steers, course=course_of(state), even=self.even, led=self.led)
 
     def _least(self, state: CharacterState, tilt: float) -> float:
         """Faster than this [m/s] a leap goes on the way of one before whom the floor is even, whose stick is tilted so far. Who aims from a stand moves the ring with it, as he
@@ -229,6 +236,14 @@ class Aim:
         """Whether somebody goes on by a small leap, slowly, aside or backward."""
         # who brakes from a run leaps to where he let go of the ring as long as he can
         return self.moving and self.even and _pace(state) < (SLOWLY[1] if self.aiming or self.skips or state.refused else MOVING)
+
+    def _turns(self, state: CharacterState) -> bool:
+        """Whether somebody on the move has let go, and turns first to where his stick is held."""
+        if not self.moving or self.aiming or self.waiting <= PATIENCE - ROUND_IN or self.rests or state.active == "jump" or math.hypot(*self.steers) < TILTED or _pace(state) < GOES[0]:
+            return False
+        x, z = in_world(state.ground, state.velocity)
+        ahead = (x * self.steers[0] + z * self.steers[1]) / (math.hypot(x, z) * math.hypot(*self.steers))
+        return BACK < ahead < math.cos(ASIDE)
 
     def _there(self, state: CharacterState) -> tuple[float, float]:
         """Where x, z [m] the ring is in the world."""
@@ -307,7 +322,7 @@ class Aim:
     def asked(self, state: CharacterState, around: Sequence[Any], gravity: float, longest: float = math.inf,
               reaches: Reaches = anywhere) -> Leap | None:
         """The jump that is wanted now that the button was let go; None while the body still turns to it."""
-        return None if self.aiming or self.waiting <= 0.0 or self._askew(state) and self.facing(state, around) is not None else self.target(state, around, gravity, longest, 0.0, reaches)
+        return None if self.aiming or self.waiting <= 0.0 or self._turns(state) or self._askew(state) and self.facing(state, around) is not None else self.target(state, around, gravity, longest, 0.0, reaches)
 
     def _askew(self, state: CharacterState) -> bool:
         """Whether a standing body does not face the ring."""

@@ -12,6 +12,7 @@ from gambol.controllers.contract import CharacterState, Intent, Leap, Status, bu
 from gambol.controllers.jump import MOMENTARY, Jumping, walks_to
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
+from .aside import ASKS, NEAREST, Known, askew, bent, beside, lands, room
 from .moves import Jump, Move
 from .pilot import STEERING
 from .run_up import RunUp
@@ -27,7 +28,9 @@ FEW, SLOW, TURNS = 1.4, 0.5, 0.35
 ASKEW = 0.15
 """A standing body faces where it jumps to within this [rad]."""
 PATIENCE = 1.0
-"""So long [s] a jump that can't be made from a stand is asked for."""
+"""So long [s] a jump that can't be made from a stand is asked for ..."""
+LONGER = 2.0
+"""... and by who has just come to rest for it: until his last foot is beside the other."""
 PASSED = 0.12
 """A place farther behind than this [m] a run-up has gone past."""
 HOPS_UP = 0.4
@@ -38,6 +41,8 @@ LAST, BENDS = 0.3, 1.25
 """So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
 STANDS, STILL = 5.0, 0.1
 """Who has stood for so long [s], no faster than this [m/s], on his way along a path will hardly get on: it is told, and who ran up to a jump gives it up."""
+STRAIGHT, SIDES = 1.1, 2.0
+"""Who has no farther to go along a path than so many times as far as straight may turn to where he jumps; and who goes straight on by so much more ahead than aside: who strafes or backs up was told to."""
 AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
 STRIDE = 0.8
@@ -51,7 +56,8 @@ class Making:
     steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for, of one from a stand not while it still landed; aimed:
     for how many it was aimed at; jumped: whether it began. passed: whether what its run-up leads to lies behind for good. hops: x, z [m] where its hop
     lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none. run_up: what it knows of its run-up. stood: for how
-    many steps somebody has stood on his way. why: what last kept him from leaping off a foot that was under him.
+    many steps somebody has stood on his way. why: what last kept him from leaping off a foot that was under him. aside: what is known of a leap to a place beside his way;
+    turns: whether he turns to one.
     """
 
     steps: int = 0
@@ -66,6 +72,8 @@ class Making:
     run_up: RunUp = RunUp()
     stood: int = 0
     why: str = ""
+    aside: Known = Known()
+    turns: bool = False
 
     def step(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
         """The same `dt` seconds later, and what is asked of a character in `state` meanwhile."""
@@ -87,10 +95,12 @@ class Making:
         now = jumping(state)
         if move.jump is not None and self.jumped:
             return now is None or now.landed
-        if self.passed or self.steps * dt >= move.seconds - 0.5 * dt:
+        if self.passed or not self.aside.stops and self.steps * dt >= move.seconds - 0.5 * dt:
             return True
-        if move.jump is not None and not move.runs:
-            return self.asked * dt > PATIENCE and (now is None or now.landed)
+        if move.jump is not None and (self.aside.stops or not move.runs):
+            if self.aside.stops and -self.aside.steps >= math.ceil(STANDS / dt):
+                return True
+            return self.asked * dt > (LONGER if self.aside.stops else PATIENCE) and (now is None or now.landed)
         if move.jump is not None and self.stood >= math.ceil(STANDS / dt):
             return True
         way = way_of(move, state)
@@ -136,12 +146,20 @@ class Making:
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
-        if move.runs:
-            if (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
+        runs = move.runs and not self.aside.stops
+        if runs:
+            if not self.turns and (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
                 return replace(self, passed=self.asked > 0 and _straight(move)), intent
             speed = float(np.hypot(state.velocity[0], state.velocity[2]))
-            near = AHEAD[0] + AHEAD[1] * speed * jump.slow + STRIDE * walks_to(state, leap)
-            ready = self.run_up.halt is not None or far <= (near if jump.within is None else jump.within)
+            usual = AHEAD[0] + AHEAD[1] * speed * jump.slow + STRIDE * walks_to(state, leap)
+            ready = self.run_up.halt is not None or far <= (usual if jump.within is None else jump.within)
+            leads = self._leads(move, jump, far) and (self.turns or beside(state, way)) and state.active == "locomotion" and self.run_up.halt is None
+            if leads and (ready or far <= usual + room(state, way, pace_of(move))):
+                if far < NEAREST and self.aside.steps < 0:
+                    return replace(self, aside=Known(stops=True), turns=True), bent(state, 0.0, way)
+                self, intent = replace(self, turns=True), bent(state, self.aside.pace or pace_of(move), way)
+                leap = replace(leap, heading=lands(state, way)) if beside(state, way) else leap
+            ready = ready and (not leads or (self.aside.once or abs(askew(state, way)) < ASKS) and far > NEAREST)
         elif far > NEAR and jump.heading is None:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
@@ -149,17 +167,30 @@ class Making:
         else:
             ready = True
         if not ready:
-            runs = move.runs and state.active == "locomotion" and np.hypot(state.velocity[0], state.velocity[2]) > UNDER_WAY
-            return self, replace(intent, aim=leap) if runs else intent
-        if not move.runs and self.aimed * dt < jump.aims - 0.5 * dt:
+            aims = runs and state.active == "locomotion" and np.hypot(state.velocity[0], state.velocity[2]) > UNDER_WAY
+            return self, replace(intent, aim=leap) if aims else intent
+        if not runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
-        return replace(self, asked=self.asked + (move.runs or now is None), hops=hops), replace(intent, leap=leap)
+        return replace(self, asked=self.asked + (runs or now is None), hops=hops), replace(intent, leap=leap)
+
+    def _leads(self, move: Move, jump: Jump, far: float) -> bool:
+        """Whether somebody on a run-up has only the way left to where his jump leads, so far away [m]: he may turn to it, unless he was told how he lands."""
+        if jump.place is None or jump.heading is not None:
+            return False
+        if self.path is not None:
+            return self.path.length - self.progress < STRAIGHT * far
+        return _straight(move) and move.velocity[0] > SIDES * abs(move.velocity[2])
 
 
 def _pace(intent: Intent) -> float:
     """How fast [m/s] somebody is asked to go."""
     return math.hypot(intent.velocity[0], intent.velocity[2])
+
+
+def pace_of(move: Move) -> float:
+    """How fast [m/s] somebody is to go on a run-up."""
+    return move.speed if move.points else math.hypot(move.velocity[0], move.velocity[2])
 
 
 def _straight(move: Move) -> bool:

@@ -14,7 +14,8 @@ from gambol.controllers.contract import CharacterState, Intent, Strike, but
 from gambol.controllers.navigation import STEP, follow
 from gambol.controllers.supervisor import both
 
-from .making import Making, way_of
+from .aside import Known, ahead, found, goes_off
+from .making import Making, pace_of, way_of
 from .moves import Move
 from .run_up import Asks
 
@@ -69,8 +70,22 @@ class Script:
         move = None if self.done else self.moves[self.index]
         if move is None or move.jump is None or self.now.jumped or state.active == "jump" or not move.runs:
             return self, intent
+        known = self.now.aside
+        if self.now.turns and not known.stops and known.steps < 0:
+            return self._turned(controller, state, intent, around, dt)
         run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt, move.jump.place)
-        return replace(self, now=replace(self.now, run_up=run_up)), run_up.heeded(state, intent)
+        return replace(self, now=replace(self.now, run_up=run_up, aside=known._replace(steps=known.steps - 1) if self.now.turns else known)), run_up.heeded(state, intent)
+
+    def _turned(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
+        """The same of one who turns to a place aside, once he knows how to leap to it."""
+        move = self.moves[self.index]
+        assert move.jump is not None and move.jump.place is not None  # or he would not turn
+        far = math.dist(move.jump.place[::2], state.ground[:2])
+
+        def tries(known: Known) -> tuple[int, float]:
+            script = replace(self, now=replace(self.now, aside=known))
+            return goes_off(controller, state, script._onward(intent, dt), around, dt, ahead(far, known.pace))
+        return replace(self, now=replace(self.now, aside=found(tries, pace_of(move), dt))), intent
 
     def _onward(self, intent: Intent, dt: float) -> Asks:
         """What it asks from here on, first an intent."""
@@ -87,7 +102,7 @@ class Script:
 
     def wished(self, state: CharacterState) -> np.ndarray | None:
         """The velocity (2,) [m/s] along x and z that its move along a path would have in the world, however its walker is turned; None of others."""
-        if self.done or self.now.path is None or self.moves[self.index].facing is not None:
+        if self.done or self.now.path is None or self.now.turns or self.moves[self.index].facing is not None:
             return None
         return follow(self.now.path, state.ground, np.float64(self.now.progress), self.moves[self.index].speed)[0]
 

@@ -19,7 +19,7 @@ from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
 from ..explain import Preview, preview
-from ..input import BRAKES, FARTHEST, MOVING, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, at_hand, before, braked, cramped, even_ahead, headlong, in_view, landing, last_chance, leaps, leaving, onto, push, ring, rises
+from ..input import BACK, BRAKES, FARTHEST, MOVING, NEAR, PATIENCE, RUNS, THINKS, WAITED, Aim, Command, RunUp, Wish, agility, aloft, at_hand, before, braked, cramped, even_ahead, headlong, in_view, landing, last_chance, leaps, leaving, onto, push, ring, rises
 from ..scene import Prop
 from ..world import DT, RATE, Character, ground_between, jump_of, stopped
 from . import settings
@@ -93,7 +93,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         facing = aim.facing(stands, props, back is not None)
         command = replace(command, facing=command.facing if facing is None else facing)
         x, z = in_world(state.ground, state.velocity)
-        if aim.takes_off and (aim.rests or command.velocity[0] * x + command.velocity[1] * z < 0.0):  # else he would brake until no foot sends him to the ring
+        if aim.takes_off and (aim.rests or command.velocity[0] * x + command.velocity[1] * z < BACK * math.hypot(*command.velocity) * math.hypot(x, z)):  # else he would brake until no foot sends him to the ring
             command = replace(command, velocity=(float(x), float(z)))
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:

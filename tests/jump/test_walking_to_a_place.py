@@ -8,8 +8,10 @@ import pytest
 from gambol.controllers.body import forward_kinematics, sole_corners
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jumping
-from gambol.controllers.jump.motion import over_ledge
+from gambol.controllers.jump.motion import moments, over_ledge
 from gambol.controllers.jump.reach.sweep import touch
+from gambol.controllers.jump.starting import goes
+from gambol.controllers.navigation import steer
 from gambol.game.scene import Box
 
 FPS = 60
@@ -100,3 +102,20 @@ def test_his_legs_clear_the_edge_that_he_comes_down_from(person):
     corners = sole_corners(person.skeleton, *forward_kinematics(person.skeleton, np.array([p.root for p in poses]), np.array([p.rotations for p in poses])))
     before = corners[..., 2] < 4.4
     assert before.any() and corners[..., 1][before].min() > 0.34
+
+
+def test_who_turns_to_a_place_waits_for_a_foot_that_will_have_turned_on(person):
+    """He saw none to come, as none sends him there who would go straight on, and pushed off the foot that had just struck, for half a second."""
+    state, jump, waits = person.start(), person.parts["jump"], []
+    for _ in range(190):
+        state, _ = person.step(state, Intent(np.array([1.3, 0.0, 0.0])), 1 / FPS)
+    place = np.array([state.ground[0] + 2.3 * np.sin(0.9), 0.0, state.ground[1] + 2.3 * np.cos(0.9)])
+    for _ in range(36):
+        state, _ = person.step(state, steer(state.ground, 1.3 * (place[[0, 2]] - state.ground[:2]) / np.hypot(*(place[[0, 2]] - state.ground[:2])), None, state.velocity[1]), 1 / FPS)
+        own = person.active(state)[1]
+        start, contacts = jump.start_of(own), np.asarray(state.contacts).reshape(2, 2).any(1)
+        for side in np.flatnonzero(contacts):
+            off = replace(start, single=int(side), along=True, bound=True)
+            waits.append([moments(jump.physique, off, goes(state), place, 0.0, 9.81, lambda foot: True, turns=turns)[1] for turns in (0.0, float(state.velocity[1]))])
+    straight, turning = np.sum(waits, 0)
+    assert turning > straight + 4

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...body import yaw
 from ..body import FLAT, Physique, Start, apex_airtime
 from .going_slowly import PUSHES, TRAILS, airtime, sent
 
@@ -69,9 +70,11 @@ def changes(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarra
     return abs(along - 1.0) if abs(ahead) <= MISSES[0] and float(np.linalg.norm(missed - ahead * goes)) <= (MISSES[1] * pace if now else math.inf) else math.inf
 
 
-def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, finds: Callable[[np.ndarray], bool], steep: float = 0.0, hands: bool = False) -> tuple[bool, bool]:
+def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, finds: Callable[[np.ndarray], bool], steep: float = 0.0, hands: bool = False,
+            turns: float = 0.0) -> tuple[bool, bool]:
     """Whether somebody who walks so fast (3,) [m/s] is in the best moment to leap off the foot that stands to a place (3,), and whether a better one is to come, off this foot or off one of the
-    next. finds: whether a foot finds floor at a place (3,). steep: how the floor rises on his way [m/m]. hands: whether hands wait for it."""
+    next. finds: whether a foot finds floor at a place (3,). steep: how the floor rises on his way [m/m]. hands: whether hands wait for it. turns: how fast he turns [rad/s]: to the place, he has turned farther by the
+    next steps."""
     assert start.single is not None
     size, pace = physique.size, max(float(np.linalg.norm(goes)), 1e-9)
     way, foot = goes / pace, start.feet[start.single, :3]
@@ -79,16 +82,20 @@ def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarra
 
     def to_come() -> Iterator[tuple[float, float]]:
         """The change of each moment to come, and by how much less it may be: from where he is now off this foot, and then off the next ones."""
-        def passing(start: Start, past: float, floor: float, less: float) -> Iterator[tuple[float, float]]:
+        def passing(start: Start, way: np.ndarray, past: float, floor: float, less: float) -> Iterator[tuple[float, float]]:
             for far in np.arange(0.0, UNTIL * size - past, EACH):
-                yield changes(physique, _gone(start, far * way), goes, place, floor, gravity, False), less
-        yield from passing(_gone(start, EACH * way), past + EACH, floor, AS_GOOD[0])
-        other, stride, lands = start, STRIDE[0] * size + STRIDE[1] * pace * math.sqrt(size), LANDS * size
+                yield changes(physique, _gone(start, far * way), pace * way, place, floor, gravity, False), less
+        yield from passing(_gone(start, EACH * way), way, past + EACH, floor, AS_GOOD[0])
+        other, stride, lands, ahead = start, STRIDE[0] * size + STRIDE[1] * pace * math.sqrt(size), LANDS * size, way
         for number in range(1, FEET + 1):
-            if not finds(foot + number * stride * way):
+            step = _turned(start if number == 1 else other, ahead, place, turns * stride / pace)
+            assert other.single is not None
+            there = other.feet[other.single, :3]
+            other, ahead = _round(other, step, there), yaw(step) @ ahead
+            if not finds(there + stride * ahead):
                 return
-            other = _stepped(_gone(other, (lands - past) * way) if number == 1 else other, stride, way)
-            yield from passing(other, lands, floor + number * stride * steep, AS_GOOD[1][hands])
+            other = _stepped(_gone(other, (lands - past) * ahead) if number == 1 else other, stride, ahead)
+            yield from passing(other, ahead, lands, floor + number * stride * steep, AS_GOOD[1][hands])
     now, better = changes(physique, start, goes, place, floor, gravity), False
     good = now < math.inf
     for change, less in to_come():
@@ -107,6 +114,23 @@ def _stepped(start: Start, far: float, way: np.ndarray) -> Start:
     feet[1 - start.single, 3:] = feet[start.single, 3:]
     velocity = start.velocity - 2.0 * float(start.velocity @ left) * left
     return replace(_gone(start, far * way), feet=feet, feet_rates=np.zeros((2, 5)), single=1 - start.single, velocity=velocity)
+
+
+def _turned(start: Start, way: np.ndarray, place: np.ndarray, turn: float) -> float:
+    """How far [rad] somebody turns in a step who goes a way (3,) and turns so far in one: no farther than to a place (3,), and not away from it."""
+    to = (place - start.centre) * FLAT
+    left = math.atan2(float(to @ [way[2], 0.0, -way[0]]), float(to @ way))
+    return max(min(turn, left), 0.0) if left > 0.0 else min(max(turn, left), 0.0)
+
+
+def _round(start: Start, turn: float, about: np.ndarray) -> Start:
+    """The same start turned [rad] about a place (3,)."""
+    if not turn:
+        return start
+    turned, feet = yaw(turn), start.feet.copy()
+    feet[:, :3] = about + (feet[:, :3] - about) @ turned.T
+    feet[:, 3] += turn
+    return replace(start, root=about + turned @ (start.root - about), centre=about + turned @ (start.centre - about), velocity=turned @ start.velocity, feet=feet, heading=start.heading + turn)
 
 
 def _gone(start: Start, way: np.ndarray) -> Start:

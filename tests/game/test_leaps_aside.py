@@ -1,0 +1,120 @@
+"""Who is to leap to a place beside his way turns to it with the steps that are left and leaps along the line to it; so do hands whose stick points aside as they tap."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gambol.controllers.jump import Jumping
+from gambol.controllers.jump.body import soles
+from gambol.controllers.locomotion import Locomotion, Settings
+from gambol.controllers.navigation import in_world
+from gambol.controllers.person import person
+from gambol.game.input import Jump, Move, Script, Wish
+from gambol.game.input.aside import beside, lands
+from gambol.game.session import Timeline, begin, refused
+from gambol.game.world import DT, RATE, Character, World
+
+HELD = 0.1
+"""So long hands hold the button [s]."""
+
+
+@pytest.fixture(scope="module")
+def someone():
+    return person(Locomotion.load(settings=Settings(idle=0.0)))
+
+
+@pytest.fixture(scope="module")
+def under_way(someone):
+    """Somebody who walks straight on at 1.3 m/s, at two moments of his stride."""
+    state, found = someone.start(), []
+    for step in range(205):
+        script, intent = Script((Move(9.0, (1.3, 0.0, 0.0)),)).step(state, DT)
+        state, _ = someone.step(state, intent, DT)
+        if step in (180, 204):
+            found.append(state)
+    return found
+
+
+def told(someone, state, aside, far, path=False):
+    """What becomes of one who is told a place so far to the left of his way [°], so far away [m]: his states, the plan that he leaps, None where there is none, the place (2,), and the script."""
+    course = math.atan2(*in_world(state.ground, state.velocity)) + math.radians(aside)
+    place = state.ground[:2] + far * np.array([math.sin(course), math.cos(course)])
+    jump = Jump((float(place[0]), 0.0, float(place[1])))
+    walks = Move(9.0, points=(tuple(map(float, place)),), speed=1.3, jump=jump) if path else Move(5.0, (1.3, 0.0, 0.0), jump=jump)
+    script, states = Script((walks, Move(3.0, (1.3, 0.0, 0.0)))), []
+    for _ in range(round(4.0 * RATE)):
+        script, intent = script.step(state, DT)
+        script, intent = script.held(someone, state, intent, (), DT)
+        state, _ = someone.step(state, intent, DT)
+        states.append(state)
+        if isinstance(state.memory.memory, Jumping):
+            return states, state.memory.memory.plan, place, script
+    return states, None, place, script
+
+
+@pytest.mark.parametrize("path", [False, True])
+@pytest.mark.parametrize("aside", [40.0, -40.0, -60.0])
+def test_who_has_time_for_a_step_turns_to_the_place_and_leaps_on_along_the_line_to_it(someone, under_way, aside, path):
+    """It was refused, as too near for his run, or he sat down on the foot that had struck and stopped where he came down, facing on."""
+    for state in under_way:
+        states, made, place, script = told(someone, state, aside, 2.2, path)
+        assert made is not None, script.refused
+        assert len(states) * DT < 2.0
+        one, way = made.path.lands, place - states[-1].ground[:2]
+        assert one is not None, "he walks on from there"
+        landed = soles(made.feet[one:one + 1], someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0)
+        assert np.linalg.norm(landed - place) < 0.05
+        assert abs(math.remainder(made.path.heading + made.path.turn - math.atan2(*way), math.tau)) < 0.3
+        assert abs(math.remainder(float(states[-1].ground[2]) - math.atan2(*way), math.tau)) < 0.75, "the steps before it turned him most of the way"
+
+
+@pytest.mark.parametrize("aside, far", [(40.0, 0.8), (-60.0, 0.8), (90.0, 1.0)])
+def test_what_is_near_and_aside_is_leapt_to_at_once_or_after_a_stop(someone, under_way, aside, far):
+    for state in under_way:
+        states, made, place, script = told(someone, state, aside, far)
+        assert made is not None, script.refused
+        feet = made.feet if made.path.lands is None else made.feet[made.path.lands:made.path.lands + 1]
+        assert np.linalg.norm(soles(feet, someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0) - place) < 0.05
+        assert abs(made.path.turn) < 0.8
+
+
+def test_what_lies_ahead_is_none_beside_him_and_nobody_turns_farther_in_the_air_than_he_can(under_way):
+    state = under_way[0]
+    ahead = np.array(in_world(state.ground, state.velocity)) / 1.3
+    assert not beside(state, 2.0 * ahead) and not beside(state, 2.0 * ahead + [0.05, 0.0]) and beside(state, 2.0 * ahead + [0.5, 0.0])
+    for aside in np.linspace(-3.0, 3.0, 13):
+        there = float(state.ground[2]) + aside
+        off = math.remainder(lands(state, np.array([math.sin(there), math.cos(there)])) - float(state.ground[2]), math.tau)
+        assert abs(off - min(max(aside, -0.75), 0.75)) < 0.06
+
+
+def tapped(someone, aside, back=None, speed=1.3):
+    """The plan of somebody who goes straight on and taps the leap as the stick is thrown so far to the left [°], and let go after so long [s]; and which way he flies [rad], and when he begins [s]."""
+    line = Timeline(begin(World((Character("A", someone, someone.start()),)), 1))
+    pressed, throw, run = round(3.1 * RATE), min(speed / 1.3, 1.0), max((speed - 1.3) / 1.7, 0.0)
+    for step in range(pressed + round(2.0 * RATE)):
+        yaw, since, before = line.now.players[0].camera.yaw, (step - pressed) / RATE, line.now
+        there, on = math.radians(aside) * (since >= 0.0), throw * (back is None or since < back)
+        line.advance((Wish(move=(-on * math.sin(there - yaw), on * math.cos(there - yaw)), run=run, jump=0.0 <= since < HELD).rounded(),))
+        assert not refused(before, line.now)
+        memory = line.now.after.characters[0].state.memory.memory
+        if isinstance(memory, Jumping):
+            flown = (memory.plan.path.land - memory.plan.path.leave)[[0, 2]]
+            return memory.plan, math.atan2(*flown), since
+    raise AssertionError("he did not leap")
+
+
+@pytest.mark.parametrize("speed", [1.3, 2.5])
+@pytest.mark.parametrize("aside", [40.0, -60.0, 90.0])
+def test_hands_that_throw_the_stick_aside_as_they_tap_leap_where_it_points(someone, aside, speed):
+    """He leapt on the way that he had gone, as the foot came that sent him there: 37° beside the stick in the median."""
+    made, way, since = tapped(someone, aside, speed=speed)
+    assert abs(way - math.radians(aside)) < math.radians(25.0) and since < 1.5
+    assert made.path.lands is not None
+
+
+def test_hands_that_let_go_of_the_stick_as_he_turns_leap_at_once_on_the_way_that_he_goes_by_then(someone):
+    _, way, since = tapped(someone, 90.0, 0.3)
+    _, _, turned = tapped(someone, 90.0)
+    assert since < turned and 0.0 < way < math.radians(80.0)
