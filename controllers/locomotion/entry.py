@@ -14,10 +14,11 @@ from ..body import Pose, contact_height, contact_points, exp, forward_kinematics
 from ..contract import CharacterState
 from . import fourier
 from .command import LEAST_STRETCH, MOST_STRETCH
+from .fading import HEAVY, held_up_kernel
 from .kernel import COLUMNS, HIPS_AT, LABELS_AT, LANES, series_kernel, time_kernel
 from .library import DURATION, HIPS, LABELS
 from .memory import RUN, WALK
-from .step import HEAVY, SINKS, sway_kernel
+from .step import sway_kernel
 
 WALKS_ON = 0.35
 """A body that moves faster than this [m/s] walks on; a slower one stands."""
@@ -139,10 +140,12 @@ def _fade(locomotion: Any, memory: np.ndarray, foot: int) -> float:
         series_kernel(locomotion.tables.series, weights, np.float32((phase + ahead) % 1.0), row)
     slower = np.ones(LABELS_AT)
     slower[HIPS_AT:] = HEAVY
-    slower[HIPS_AT + 1] = SINKS if memory["blend"][HIPS_AT + 1] > 0.0 else HEAVY
+    up, rate = float(memory["blend"][HIPS_AT + 1]), float(memory["blend_rate"][HIPS_AT + 1])
     for half in FADES:
         left = way.astype(float)
-        left[:, :LABELS_AT] += settle(memory["blend"][:LABELS_AT], memory["blend_rate"][:LABELS_AT], slower * half, later)[0]
+        fades = settle(memory["blend"][:LABELS_AT], memory["blend_rate"][:LABELS_AT], slower * half, later)[0]
+        fades[:, HIPS_AT + 1] = [held_up_kernel(up, rate, half, float(t[0]))[0] for t in later]
+        left[:, :LABELS_AT] += fades
         height, folded = _swings(locomotion, left, foot)
         if height < DOWN and folded > FOLDED:
             break

@@ -1,9 +1,7 @@
 """Footing: feet that stand do not move, feet that swing arrive without a jump.
 
-For each foot two points are watched, heel and ball, and how firmly each grips the floor: 0 … 1, from the blend's
-labels. What is shown is the blend's foot plus an offset along the floor and a turn. A point that grips takes none of
-the blend's movement, one that is free takes all of it, and between them a share: so a foot comes to stand, and
-leaves, without a jump of speed. While a foot swings its offset goes to zero by the time it lands, as a cubic does.
+What is shown is the blend's foot plus an offset along the floor and a turn, which keeps a foot that grips the floor (`grip`)
+where it is. While a foot swings its offset goes to that of its foothold by the time it lands (`swing`).
 The foot is turned so that it passes through both points, the toe bends so that it does not sink, and the leg follows
 by two-bone inverse kinematics. A leg that is too short first lifts its heel about the ball, as legs do, then lowers
 the pelvis a little, and only then lets go.
@@ -17,38 +15,23 @@ import numpy as np
 
 from ..body import relative_kernel, spring_kernel
 from ..compiled import kernel
-from .first_stride import shift_left
 from .foot_points import on_floor, shown_kernel
-from .kernel import LABELS_AT
+from .grip import come_down, grip_rate, hold_kernel, take_hold
 from .last_stride import BESIDE, OFF, STAYS
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
-from .root_motion import as_runner, sooner
-from .short_leg import STRAINED, give_way, lacks_kernel, lower_heel, nearer_kernel
-from .memory import WALK
+from .root_motion import as_runner
+from .short_leg import give_way, lacks_kernel, lower_heel, nearer_kernel
 from .swing import SWING, swing_kernel, swing_progress
 from .swing_height import lead_up, led_up
 from ..navigation.passing import STEP
 from .uneven_ground import RECOVERS, follow_ground, leave_level, lie_kernel, rise_ahead, touch
 
-TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
-"""A point is free while its blended label is below the first, and held while it is above the second: early as it
-comes to stand, so that it does not creep in, and early as it leaves, walking and running, so that the leg is not held
-back …"""
-GATE = 0.035
-"""… and takes hold only when it is lower than this above where it rests [m]."""
-GRIP_RATE = 30.0, 25.0
-"""How fast a grip may change [1/s]: walking, where both feet are as high; and on stairs, where a foot that stops sooner ends in a riser, and running, since who runs pushes only while a foot
-grips."""
 RUNNER_HALFLIFE = 0.1
 """Who runs onto stairs, or off them, comes to a runner's steps there, or leaves them, with this half-life [s]."""
-AIM_HALFLIFE = 0.02
-"""A foot that is about to stand on a place that it chose comes to it with this half-life [s]."""
 STEEPLY, FREED = (2.5, 1.2), 0.02
 """A point that leaves its place, walking and running, is lifted by so many times as far as it got, less and less and up to the second [m]."""
 HELD_AGAIN = 0.4
 """Over so much of a swing's time after it came down a point is still held, not yet about to leave."""
-LAND_HALFLIFE = 0.03
-"""A point comes down to the floor, or back to the blend's height, with this half-life [s]."""
 LIFT_HALFLIFE = 0.02
 """How fast a swinging foot is lifted over the floor it must clear [s]."""
 PELVIS_HALFLIFE = 0.08
@@ -57,8 +40,6 @@ PELVIS_DROP = 0.05, 0.03
 """The most that short legs may lower the pelvis [m], on level ground and, beside half of what feet are apart in height, elsewhere."""
 DOWN, BENDS = 0.12, 0.012
 """Whoever stands on a slope stands lower, by the first at most [m], for both heels to be down: on legs that are the second shorter than straight."""
-LEAVES, LENT = -1.0, 0.3
-"""A ball whose label falls faster than this [1/s], its heel free by more than the second, does not hold on again: its leg would be stretched, and whip."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
 OVER = 0.3
@@ -74,7 +55,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     ahead: of the blend's feet (`foothold`). tops, floor: of the ground (`uneven_ground`). before: (4, 2) where the blend's contact points were one step ago, in
     the world.
     """
-    ankle, now, lift, length, firm = np.empty((2, 3)), np.empty((4, 2)), np.empty(2), np.empty(2), np.empty(2)
+    ankle, now, lift, length, firm, clears = np.empty((2, 3)), np.empty((4, 2)), np.empty(2), np.empty(2), np.empty(2), np.empty(2)
     on_floor(m, now)
     m.most = m.stairs = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
@@ -88,20 +69,20 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     even = m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0
     for foot in range(2):
         for k in range(2 * foot, 2 * foot + 2):
-            take_hold(m, k, legs.height, sooner(m) * GRIP_RATE[0 if m.family == WALK and m.base[0] == m.base[1] else 1] * dt)
-        clears = clearance + OVER * abs(m.base[foot] - m.left[foot])
+            take_hold(m, k, legs.height, dt * grip_rate(m, foot, (now[k, 0] - before[k, 0]) / dt, (now[k, 1] - before[k, 1]) / dt))
+        clears[foot] = clearance + OVER * abs(m.base[foot] - m.left[foot])
         if even and m.stairs <= 0.0 and led_up(m, foot, ahead):
-            lead_up(m, foot, ahead, legs.height, swings_over(m, foot, clears), dt)
+            lead_up(m, foot, ahead, legs.height, swings_over(m, foot, clears[foot]), dt)
         else:
             come_down(m, foot, legs.height, dt)
     for foot in range(2):  # both, since who swings passes where the other stands now
         if m.grip[2 * foot] > 0.0 or m.grip[2 * foot + 1] > 0.0:
-            _hold(m, foot, before, now, dt)
+            hold_kernel(m, foot, before, now, dt)
     for foot in range(2):
         if m.grip[2 * foot] <= 0.0 and m.grip[2 * foot + 1] <= 0.0:
             ball = 2 * foot + 1
             swing_kernel(m, body, foot, ahead, (now[ball, 0] - before[ball, 0]) / dt, (now[ball, 1] - before[ball, 1]) / dt, legs.height, tops, floor, dt)
-        lift[foot] = _swing_lift(m, foot, clearance + OVER * abs(m.base[foot] - m.left[foot]), dt)
+        lift[foot] = _swing_lift(m, foot, clears[foot], dt)
     need = m.lower = 0.0
     lowered = m.pelvis if even else 0.0  # on stairs, whose feet reach far down, heels rise first
     for foot in range(2):
@@ -137,69 +118,6 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         relative_kernel(orientations[hip + 1], orientations[hip + 2], local[hip + 2])
         if tops.shape[0] > 0:
             touch(m, body, hip, foot, legs.height, tops, floor, positions, orientations)
-
-
-@kernel
-def take_hold(m, k, height, step):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. step: how far a
-    grip changes at most."""
-    wanted = 1.0
-    if not (m.settled or m.waits or shift_left(m) > 0.0):
-        loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
-        share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
-        strain = min(max((m.rise[k // 2] - STRAINED[0]) / (STRAINED[1] - STRAINED[0]), 0.0), 1.0) if k % 2 else 0.0
-        wanted = share * share * (3.0 - 2.0 * share) * (1.0 - (1.0 - m.grip[2 * (k // 2)]) * strain * strain * (3.0 - 2.0 * strain))
-        if m.torn[k // 2]:  # it was let go, until it is well into its swing
-            wanted = 0.0
-            if 0.3 < swing_progress(m, k // 2) < 1.0:
-                m.torn[k // 2] = 0
-    if wanted > m.grip[k] and not m.settled and (
-            m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
-        wanted = m.grip[k]
-    if k % 2 and wanted > m.grip[k] and m.row_rate[LABELS_AT + k] < LEAVES and m.lent[k // 2] > LENT:
-        wanted = m.grip[k]
-    m.grip[k] += min(max(wanted - m.grip[k], -step), step)
-    m.standing[k] = 1 if m.grip[k] > 0.5 else 0
-
-
-@kernel
-def come_down(m, foot, height, dt):
-    """Bring a foot's heel and ball to the floor as they grip it, else to the blend's height."""
-    for k in range(2 * foot, 2 * foot + 2):
-        below = lie_kernel(m, k) + m.grip[k] * (height - m.points[k, 1])
-        m.raised[k], m.raised_rate[k] = spring_kernel(m.raised[k], m.raised_rate[k], below, LAND_HALFLIFE, dt)
-
-
-@kernel
-def _hold(m, foot, before, now, dt):
-    """Take from a foot that stands, or has begun to, as much of the blend's movement as it grips: the offset of what is shown from the
-    blend, x, z of the ball in the world and the foot's turn."""
-    h, b = 2 * foot, 2 * foot + 1
-    offset, rate = m.offset[foot], m.offset_rate[foot]
-    grip = max(m.grip[h], m.grip[b])
-    for i in range(2):  # as far as it gave way, it stays aside
-        offset[i] += m.aside[foot, i]
-        m.aside[foot, i] = m.aside_rate[foot, i] = 0.0
-    if m.aimed[foot] == 1 and grip < 1.0:  # to the very place that it chose
-        for i in range(2):
-            offset[i] += (m.land[foot, i] - offset[i]) * (1.0 - grip) * (1.0 - 2.0 ** (-dt / AIM_HALFLIFE))
-    heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
-    was_x, was_z = before[h, 0] - before[b, 0], before[h, 1] - before[b, 1]
-    x, z = now[h, 0] - now[b, 0], now[h, 1] - now[b, 1]
-    blended = math.atan2(was_z * x - was_x * z, was_x * x + was_z * z)
-    c, s = math.cos(offset[2]), math.sin(offset[2])
-    px = before[b, 0] + offset[0] + heel * (c * was_x + s * was_z)
-    pz = before[b, 1] + offset[1] + heel * (c * was_z - s * was_x)
-    px += (1.0 - grip) * (now[b, 0] - before[b, 0] + heel * (x - was_x))
-    pz += (1.0 - grip) * (now[b, 1] - before[b, 1] + heel * (z - was_z))
-    turn = offset[2] - m.grip[h] * m.grip[b] * blended
-    c, s = math.cos(turn), math.sin(turn)
-    px -= now[b, 0] + heel * (c * x + s * z)
-    pz -= now[b, 1] + heel * (c * z - s * x)
-    rate[0], rate[1], rate[2] = (px - offset[0]) / dt, (pz - offset[1]) / dt, (turn - offset[2]) / dt
-    offset[0], offset[1], offset[2] = px, pz, turn
-    m.offset_push[foot, 0] = m.offset_push[foot, 1] = m.offset_push[foot, 2] = 0.0
-    m.swing[foot] = math.sqrt(px * px + pz * pz)
 
 
 @kernel

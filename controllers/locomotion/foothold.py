@@ -15,6 +15,7 @@ from .command import look_ahead, reached, stages
 from .control_space import SCALE
 from .foot_lines import away_kernel, need_of_room, own_side, with_toe
 from .foot_points import foot_points
+from .fading import HEAVY, held_up_kernel
 from .foretold_way import foretell_way
 from .kernel import HIPS_AT, LANES, pose_kernel, series_kernel
 from .last_stride import bring_together, step_first
@@ -31,6 +32,8 @@ TRIES = 2
 REPLANS = 20.0
 """The place for a foot that comes down in so many seconds moves no faster than these times that many metres a second: the smoothest way to one that has moved
 so takes a push of three times as much [m/s²]."""
+FADED = 0.02
+"""An offset that is smaller [m, rad] needs no second look."""
 SOONEST = 0.002
 """Nothing is looked up nearer than this [s]."""
 
@@ -57,7 +60,10 @@ def plan_footholds(m, settings, space, table, turns, body, legs, ahead, flat, dt
             later = max(ahead.until[foot], SOONEST)
             ahead.until[foot] = later
             _foresee(m, foot, later, settings, space, table, body, legs, ahead)
-            foretell_way(m, body, foot, left, legs, ahead)
+            fades = _fades(m, legs.hip[foot])
+            if fades:
+                _halfway(m, foot, left, later, table, body, legs, ahead)
+            foretell_way(m, body, foot, left, legs, ahead, fades)
         x, z = m.land[foot, 0], m.land[foot, 1]
         m.land[foot, 0] = m.land[foot, 1] = 0.0
         bring_together(m, foot, legs.stance)
@@ -105,10 +111,34 @@ def _come_down(m, foot, later, body, legs, ahead):
 
 
 @kernel
+def _halfway(m, foot, left, later, table, body, legs, ahead):
+    """Write where the blend's heels and balls are halfway through what is `left` of a swing, in phase, while an offset fades, into ahead.halfway (4, 3)."""
+    for i in range(m.weights.shape[0]):
+        ahead.between[i] = 0.5 * (m.weights[i] + ahead.weights[i])
+    series_kernel(table, ahead.between, (SWING[m.family] + 0.5 * foot - 0.5 * left) % 1.0, ahead.row)
+    _fading(m, legs.hip[foot], 0.5 * later, ahead.row)
+    pose_kernel(body, ahead.row, ahead.local, ahead.positions, ahead.orientations, ahead.scratch)
+    foot_points(body, legs, ahead.positions, ahead.orientations, ahead.halfway)
+    stride(m, ahead.halfway, ahead.positions)
+
+
+@kernel
+def _fades(m, hip):
+    """Whether an offset of the hips or of a leg is still to fade."""
+    most = 0.0
+    for i in range(3):
+        most = max(most, abs(m.blend[HIPS_AT + i]), abs(m.blend[i * LANES]))
+        for j in range(hip, hip + 3):
+            most = max(most, abs(m.blend[i * LANES + j]))
+    return most > FADED
+
+
+@kernel
 def _fading(m, hip, later, row):
     """Add what will be left of an offset to the columns of the hips and of a leg."""
     for i in range(3):
-        row[HIPS_AT + i] += spring_kernel(m.blend[HIPS_AT + i], m.blend_rate[HIPS_AT + i], 0.0, 2.0 * m.fade, later)[0]
+        row[HIPS_AT + i] += (held_up_kernel(m.blend[HIPS_AT + i], m.blend_rate[HIPS_AT + i], m.fade, later) if i == 1 else
+                             spring_kernel(m.blend[HIPS_AT + i], m.blend_rate[HIPS_AT + i], 0.0, HEAVY * m.fade, later))[0]
         row[i * LANES] += spring_kernel(m.blend[i * LANES], m.blend_rate[i * LANES], 0.0, m.fade, later)[0]
         for j in range(hip, hip + 3):
             d = i * LANES + j

@@ -24,7 +24,7 @@ class Ahead(NamedTuple):
     until: (2,) when each foot that swings comes down [s], 0 for one that should be down. way: (2, SAMPLES, 3, 3) where the blend's heels, balls and toes' ends
     will be, x and z in the world and y over the floor, after `shares` (2, SAMPLES) of that time, 0 or less where that is
     past or nothing is planned. beside: (2, SAMPLES, 3, 2) the centre line of the other foot then, x and z in the world. toe: (2, 3) from the blend's
-    balls to their toes' ends now, in the ground frame [m].
+    balls to their toes' ends now, in the ground frame [m]. between: weights halfway; halfway: (4, 3) heels and balls then.
     """
 
     row: np.ndarray
@@ -43,6 +43,8 @@ class Ahead(NamedTuple):
     beside: np.ndarray
     toe: np.ndarray
     now: np.ndarray
+    between: np.ndarray
+    halfway: np.ndarray
 
 
 @kernel
@@ -51,18 +53,19 @@ def room_to_plan(width, joints):
     return Ahead(np.empty(COLUMNS, np.float32), np.empty(width, np.float32), np.empty((joints, 3, 3), np.float32),
                  np.empty((joints, 3), np.float32), np.empty((joints, 3, 3), np.float32), np.empty(SCRATCH, np.float32),
                  np.empty((4, 3), np.float32), np.empty(4), np.empty((4, 3)), np.empty((2, 3, 2)),
-                 np.empty(2), np.empty((2, SAMPLES)), np.empty((2, SAMPLES, 3, 3)), np.empty((2, SAMPLES, 3, 2)), np.empty((2, 3)), np.empty((4, 3, 3)))
+                 np.empty(2), np.empty((2, SAMPLES)), np.empty((2, SAMPLES, 3, 3)), np.empty((2, SAMPLES, 3, 2)), np.empty((2, 3)), np.empty((5, 3, 3)),
+                 np.empty(width, np.float32), np.empty((4, 3), np.float32))
 
 
 @kernel
-def foretell_way(m, body, foot, left, legs, ahead):
+def foretell_way(m, body, foot, left, legs, ahead, fades):
     """Write into ahead.way where the blend's foot will be until it comes down, `left` further in phase, into ahead.shares when, and into ahead.beside where the other foot
     will be.
 
     As the paths of the primitives have it at weights and along a way that lead evenly from now to then, and off it by as much as
-    it is now and will be then, most of which goes at first, as offsets do that fade. The other foot stays, and turns about its ball as the blend's does once its heel is up.
+    it is now and will be then, most of which goes at first; while an offset `fades`, which may carry the foot on for a while, by as much as it will be halfway, too. The other foot stays, and turns about its ball as the blend's does once its heel is up.
     """
-    ground, now, end, at, there = ahead.vectors[0], ahead.now[0], ahead.now[1], ahead.now[2], ahead.now[3]
+    ground, now, end, at, there, half = ahead.vectors[0], ahead.now[0], ahead.now[1], ahead.now[2], ahead.now[3], ahead.now[4]
     strike, whole, paths = SWING[m.family] + 0.5 * foot, ahead.until[foot], legs.paths
     stands = other_line(m, body, foot, ahead.lines[0]) and (m.grip[2 - 2 * foot] > 0.0 or m.grip[3 - 2 * foot] > 0.0)
     _along_paths(m.weights, ahead.weights, 0.0, paths, strike - left, foot, now)
@@ -74,6 +77,12 @@ def foretell_way(m, body, foot, left, legs, ahead):
         for i in range(3):
             now[k, i] = m.points[2 * foot + k, i] - now[k, i]
             end[k, i] = ahead.points[2 * foot + k, i] - end[k, i]
+    if fades:
+        _along_paths(m.weights, ahead.weights, 0.5, paths, strike - 0.5 * left, foot, half)
+        for i in range(3):
+            half[2, i] = ahead.halfway[2 * foot + 1, i] - half[1, i]
+            for k in range(2):
+                half[k, i] = ahead.halfway[2 * foot + k, i] - half[k, i]
     goes = ahead.vectors[1]  # the ground frame as it moves now, for all that time
     for i in range(3):
         goes[i] = m.ground[i]
@@ -93,7 +102,10 @@ def foretell_way(m, body, foot, left, legs, ahead):
         gone = share * (2.0 - share)
         for p in range(3):
             for i in range(3):
-                at[p, i] += now[p, i] + gone * (end[p, i] - now[p, i])
+                if fades:
+                    at[p, i] += (1.0 - share) * (1.0 - 2.0 * share) * now[p, i] + share * (4.0 * (1.0 - share) * half[p, i] + (2.0 * share - 1.0) * end[p, i])
+                else:
+                    at[p, i] += now[p, i] + gone * (end[p, i] - now[p, i])
             ahead.way[foot, k, p, 0] = x + c * at[p, 0] + s * at[p, 2]
             ahead.way[foot, k, p, 1] = at[p, 1]
             ahead.way[foot, k, p, 2] = z - s * at[p, 0] + c * at[p, 2]

@@ -11,6 +11,7 @@ from ..compiled import kernel
 from .carried_arms import carry_arms
 from .command import LEAST_STRETCH, MOST_STRETCH, reached, shape_command, stages
 from .control_space import SCALE
+from .fading import HEAVY, held_up_kernel
 from .first_stride import BEFORE, SHIFT, add_start, break_off, leans, leave_rest, shift_left, start_kernel
 from .foot_lock import at_rest, place_feet
 from .foothold import plan_footholds, stride
@@ -31,10 +32,6 @@ from .uneven_ground import stand_on
 
 STRETCH_HALFLIFE = 0.08
 """Strides lengthen and shorten with this half-life [s]."""
-HEAVY = 2.0
-"""An offset of the hips, which the mass hangs on, takes this many times as long to go as one of the joints …"""
-SINKS = 0.8
-"""… and this many times where it holds them up: who begins to run as his hips go down, or a walk as they rise, would else be carried on through the air."""
 FASTEST_WALK, SLOWEST_RUN = 1.3, 2.4
 """Who is asked to run does so once faster than the one [m/s], who is asked to walk once slower than the other …"""
 MOMENTS = 8
@@ -226,17 +223,6 @@ def blend_series(m, settings, table, fresh, legs, dt):
     if m.left_turn:
         after_turn(m, table, fresh, dt)
     show_row(m, settings, fresh, legs, dt)
-
-
-@kernel
-def held_up_kernel(x, v, fade, dt):
-    """The offset of the hips' height [m] and its rate after dt: one that holds them up goes sooner, from the moment on at which it begins to."""
-    up = x > 0.0 or x == 0.0 and v > 0.0
-    half = (SINKS if up else HEAVY) * fade
-    pull = v + x * 2.0 * math.log(2.0) / (half + 1e-9)
-    first = min(-x / pull, dt) if x * pull < 0.0 else dt
-    x, v = spring_kernel(x, v, 0.0, half, first)
-    return spring_kernel(0.0, v, 0.0, (HEAVY if up else SINKS) * fade, dt - first) if first < dt else (x, v)
 
 
 @kernel

@@ -27,7 +27,7 @@ SOONEST = 0.06
 QUICKEST = 0.035
 """A foot gives way in no less than this [s] …"""
 HARDEST = 150.0
-"""… and is pushed aside no harder than this [m/s²]."""
+"""… and is pushed aside, or up, no harder than this [m/s²]."""
 LOW, HIGH = 0.25, 0.45
 """A foot that swings higher than this above the floor passes freely, the more the higher [m]."""
 
@@ -36,6 +36,24 @@ LOW, HIGH = 0.25, 0.45
 def swing_progress(m, foot):
     """How far through its swing foot 0 (left) or 1 is, by the phase: 0 … 1, beyond while it stands."""
     return ((m.phase - 0.5 * foot) % 1.0) / SWING[m.family]
+
+
+@kernel
+def push_back(x, v, left):
+    """The least acceleration (of ∫ a²) [m/s²] by which what is x off its way and goes at v is back on it, at rest, as so many seconds are over."""
+    return -(6.0 * x / left + 4.0 * v) / left
+
+
+@kernel
+def led_to(x, v, push, later):
+    """Where an acceleration that falls evenly to nothing, the least that leads there, leads from place x and speed v in so many seconds."""
+    return x + later * (v + later * push / 3.0)
+
+
+@kernel
+def push_on(far, later):
+    """By how much that acceleration must be more to lead so much farther."""
+    return 3.0 * far / (later * later)
 
 
 @kernel
@@ -66,14 +84,12 @@ def swing_kernel(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, dt
 def _give_way(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, push):
     """Write into `push` (2,) how a swinging foot's way aside x, z in the world is accelerated [m/s²]: by the least by which it is back as it lands, and by the least more
     by which it is as far from the other foot, and from what is too high to step on, as it must be at each moment of its way, the soonest last.
-
-    From place x and speed v acceleration a, which falls evenly to nothing, leads to x + v t + a t² / 3 in t seconds: the least (of ∫ a²) that leads there.
     """
     there, here, out = np.empty((3, 2)), np.empty((3, 2)), np.empty(2)
     aside, rate = m.aside[foot], m.aside_rate[foot]
     left = max(ahead.until[foot], SOONEST)
     for i in range(2):
-        push[i] = -(6.0 * aside[i] / left + 4.0 * rate[i]) / left
+        push[i] = push_back(aside[i], rate[i], left)
     passes = not (m.turn != 0.0 and m.spot) and other_line(m, body, foot, there)  # on the spot feet pass each other as recorded
     if not passes and tops.shape[0] == 0:
         return
@@ -98,8 +114,7 @@ def _give_way(m, body, foot, ahead, speed_x, speed_z, height, tops, floor, push)
 def _past_walls(m, tops, floor, foot, here, x, z, later, aside, rate, push, out):
     """Add to `push` (2,) what leads a foot whose line `here` (3, 2) in so many seconds, without giving way, would be in a wall as it gives way: to where it is out of it
     from x, z aside, which do not hang on how it went until now. out: (2,) scratch."""
-    gone_x = aside[0] + later * (rate[0] + later * push[0] / 3.0)
-    gone_z = aside[1] + later * (rate[1] + later * push[1] / 3.0)
+    gone_x, gone_z = led_to(aside[0], rate[0], push[0], later), led_to(aside[1], rate[1], push[1], later)
     _move(here, gone_x, gone_z)
     if not out_of_walls(m, tops, floor, foot, here, out):
         return
@@ -122,9 +137,9 @@ def _move(line, x, z):
 @kernel
 def _reach(x, v, push, later, along_x, along_z, far):
     """Add to `push` (2,) the least that leads as `far` [m] along a unit way x, z from place x (2,) and speed v (2,) in so many seconds."""
-    lacks = far - along_x * (x[0] + later * (v[0] + later * push[0] / 3.0)) - along_z * (x[1] + later * (v[1] + later * push[1] / 3.0))
+    lacks = far - along_x * led_to(x[0], v[0], push[0], later) - along_z * led_to(x[1], v[1], push[1], later)
     if lacks > 0.0:
-        more = 3.0 * lacks / (later * later)
+        more = push_on(lacks, later)
         push[0] += more * along_x
         push[1] += more * along_z
 

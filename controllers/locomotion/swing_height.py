@@ -9,11 +9,8 @@ from __future__ import annotations
 import math
 
 from ..compiled import kernel
-from .swing import QUICKEST, SAMPLES, SOONEST
+from .swing import HARDEST, QUICKEST, SAMPLES, SOONEST, led_to, push_back, push_on
 from .uneven_ground import lie_kernel
-
-HARDEST = 150.0
-"""A point is pushed up no harder than this [m/s²]."""
 
 
 @kernel
@@ -32,16 +29,16 @@ def lead_up(m, foot, ahead, height, clears, dt):
         point = 2 * foot + k
         lie = lie_kernel(m, point)
         x, v = m.raised[point] - lie, m.raised_rate[point]
-        push = -(6.0 * x / left + 4.0 * v) / left
+        push = push_back(x, v, left)
         for j in range(SAMPLES - 1, -1, -1):
             s = ahead.shares[foot, j]
             if s <= 0.0 or s >= 1.0:
                 continue
             later = max(s * left, QUICKEST)
             need = height + clears * math.sin(math.pi * (j + 0.5) / SAMPLES) - ahead.way[foot, j, k, 1]
-            lacks = need - (x + later * (v + later * push / 3.0))
+            lacks = need - led_to(x, v, push, later)
             if lacks > 0.0:
-                push += 3.0 * lacks / (later * later)
+                push += push_on(lacks, later)
         push = min(max(push, -HARDEST), HARDEST)
         m.raised[point] = lie + x + dt * (v + 0.5 * dt * push)
         m.raised_rate[point] = v + dt * push

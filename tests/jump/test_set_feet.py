@@ -20,7 +20,7 @@ from _limbs import legs_apart  # noqa: E402
 
 NEAREST, LONGEST = 0.10, 0.75
 """Axes of legs come no nearer to each other than the first [m]; nobody sets his feet for longer than the second [s]."""
-MIDST = [((0.0, 2.0, 0.0), 1.0), ((0.0, -2.0, 0.0), 1.1), ((0.0, -3.0, 0.0), 1.1), ((0.6, 0.0, 0.5), 1.3), ((-0.5, 0.0, -0.4), 2.1)]
+MIDST = [((0.0, 2.0, 0.0), 1.0), ((0.0, -2.0, 0.0), 1.1), ((0.0, -3.0, 0.0), 1.07), ((0.6, 0.0, 0.5), 1.3), ((-0.5, 0.0, -0.4), 2.1)]
 """Velocities, and after how long [s] with them, that leave feet near each other, turned or crossed."""
 
 

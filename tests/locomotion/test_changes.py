@@ -238,6 +238,35 @@ def test_no_foot_falls_onto_a_height_over_the_floor_as_a_run_becomes_a_walk(loco
     assert max(worst) < 115.0 and np.median(worst) < 80.0
 
 
+@pytest.mark.parametrize("before, after", [(2.5, 1.3), (2.5, 0.0), (3.0, 1.3)])
+def test_no_runner_sinks_as_he_begins_to_walk(locomotion, before, after):
+    """His hips go down as a foot of his run comes to bear, and a walk's up: carried on, they went down by 8 cm more than in any stride, into a lunge."""
+    motion, asked = changed(locomotion, (before, 0, 0), (after, 0, 0))
+    hips = motion.positions[:, :, 0, 1]
+    for n, frame in enumerate(asked):
+        assert hips[frame:frame + 2 * FPS, n].min() > hips[frame - FPS:frame, n].min() - 0.04
+
+
+@pytest.mark.parametrize("before", [2.5, 3.0, 3.5])
+def test_feet_of_a_run_that_becomes_a_walk_come_to_stand_evenly(locomotion, before):
+    """Just before a strike they still go at 3.5 m/s; they stood within a frame, and on their heels for a fifth of a second."""
+    motion, asked = changed(locomotion, (before, 0, 0), (1.3, 0, 0))
+    flat = motion.points[..., [0, 2]]
+    stopped = np.linalg.norm(flat[2:] - 2.0 * flat[1:-1] + flat[:-2], axis=-1) * FPS**2
+    walks = np.array([s.memory["family"] for s in motion.states]) == 0
+    on_heel = (np.linalg.norm(np.diff(motion.points[..., ::2, :], axis=0), axis=-1) < 0.005) & (motion.points[1:, :, 1::2, 1] > 0.045)
+    longest = 0
+    for n, frame in enumerate(asked):
+        begins = frame + int(walks[frame:, n].argmax())
+        assert np.where(motion.points[1:-1, n, :, 1] < 0.06, stopped[:, n], 0.0)[begins - 1:begins + FPS].max() < 110.0
+        for foot in range(2):
+            count = np.zeros(FPS + 1, int)
+            for k in range(FPS):
+                count[k + 1] = (count[k] + 1) * on_heel[begins + k, n, foot]
+            longest = max(longest, count.max())
+    assert longest < 8
+
+
 @pytest.mark.parametrize("wish", [(0, 0, 0.45), (0, 0, -0.45), (0, 1.5, 0), (-0.6, 0, 0), (0, 0, 0)])
 def test_nobody_goes_on_running_who_does_not_ask_for_it(locomotion, wish):
     """At whatever moment of a run something slow is asked for, it is walked two seconds later."""

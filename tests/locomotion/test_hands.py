@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import anatomy, centre_of_mass
 from gambol.controllers.contract import Intent
+from gambol.controllers.locomotion.fading import SINKS, held_up_kernel
 from gambol.controllers.locomotion.first_stride import FASTEST_TURN, SHARE_HALFLIFE, start_kernel
-from gambol.controllers.locomotion.foot_lock import take_hold
 from gambol.controllers.locomotion.gaze import QUICKEST, look_on
+from gambol.controllers.locomotion.grip import LATE, take_hold
 from gambol.controllers.locomotion.kernel import LABELS_AT
-from gambol.controllers.locomotion.step import SINKS, held_up_kernel
 from playing import FPS, play
 
 FLIGHT = 0.25
@@ -125,6 +125,16 @@ def test_a_ball_that_leaves_does_not_hold_on_again(locomotion, grip, label, fall
     assert memory["grip"][0, 3] <= np.float32(grip)
 
 
+@given(st.floats(0.0, 0.99), st.floats(0.4, 1.0), st.floats(0.31, 1.0))
+def test_a_heel_that_leaves_does_not_hold_on_again(locomotion, grip, label, lent):
+    """Late in its stance, its ball firm: it was pulled down to the floor within a frame as a turn began, and its knee with it."""
+    memory = locomotion.start().memory.copy().reshape(1)
+    memory["settled"], memory["lent"], memory["phase"] = 0, lent, 0.38 * LATE + 0.02
+    memory["grip"], memory["row"][0, LABELS_AT], memory["row_rate"][0, LABELS_AT] = (grip, 1.0, 1.0, 1.0), label, 1.0
+    take_hold(memory[0], 0, locomotion.tables.legs.height, 25.0 / FPS)
+    assert memory["grip"][0, 0] <= np.float32(grip)
+
+
 @given(st.floats(0.0, 2.5), st.floats(0.0, 2.5), st.integers(0, 30))
 def test_what_a_start_adds_follows_the_wish_smoothly(locomotion, before, after, ticks):
     """A way that changes meanwhile makes no arm jerk."""
@@ -148,3 +158,10 @@ def test_what_holds_hips_up_goes_the_same_way_in_any_steps(x, v, pieces):
         most = max(most, at[0])
     assert np.allclose(once, at, atol=1e-9)
     assert most <= max(x, 0.0) + max(v, 0.0) * SINKS * 0.18 / (2.0 * np.log(2.0)) / np.e + 1e-9
+
+
+@given(st.floats(-0.2, 0.0), st.floats(-1.5, 0.0))
+def test_hips_that_sink_as_gaits_change_are_caught(x, v):
+    """What they are off by grows downward no longer than what holds them up would be on its way: half as fast as one that is let go, a body went down by 10 cm more."""
+    ways = [held_up_kernel(x, v, 0.18, t)[0] for t in np.linspace(0.0, 0.6, 200)]
+    assert min(ways) >= x + v * SINKS * 0.18 / (2.0 * np.log(2.0)) / np.e - 1e-9
