@@ -25,6 +25,7 @@ from .network import Network
 from .samples import FIRST
 from .slots import INPUTS, LAGS, SLOTS, view_kernel
 from .solver import fit_kernel
+from .steadying import RECENT, begun, calmed, quiet, smoothed
 
 FADING = 0.9
 """What is left of the network's error a frame later."""
@@ -36,21 +37,12 @@ BLUR = 1.0
 """Noise on points, over this, makes them met so much less exactly."""
 RESTING = 0.95
 """What is left of the body's velocity a frame later where no tracker is seen."""
-ACCELERATION = 10.0
-"""How fast velocities change in human motion [m/s²], and in joints [rad/s²] as far as filters may smooth them."""
-ROUGH = 0.002
-"""How unsteady poses are even where trackers are not [m, rad]."""
-WAVERING = 0.006
-"""How much what the network expects wavers [m, rad]."""
 STEPS, TOLERANCE = 6, 1e-4
 """Of the solver: steps at most, and the share of the energy below which a gain ends them."""
 BEGINNINGS = 8
 """From so many headings the first frame is tried where no tracker turns."""
 SURE = np.radians(10.0)
 """A first frame that turns by more than this when it is seen from its own heading hardly agrees with itself."""
-_LITTLE = 2.0  # frames that velocities rest on at first
-_RECENT = 15  # frames that tell the noise
-_JUMP = 1.0  # rad or m, beyond which the chart has jumped: nothing to be smoothed
 _WORLD, _NONE = np.zeros(3), np.zeros(4)
 
 
@@ -108,7 +100,7 @@ class Trackers:
                 places[:, absent], turns[:, absent] = np.nan, np.nan
         pose, before = frames[0], frames[min(1, len(frames) - 1)]
         return Remembered(pose, before, np.zeros(WIDTH), places, turns, np.zeros(len(self.controls), bool),
-                          np.full((_RECENT, len(self.controls), 3), np.nan), None, Motion(pose, less(pose, before), _LITTLE), _NONE,
+                          np.full((RECENT, len(self.controls), 3), np.nan), None, begun(pose, less(pose, before)), _NONE,
                           Feet.none())
 
     def step(self, memory: Remembered, points: np.ndarray, turns: np.ndarray | None = None) -> tuple[Remembered, Pose]:
@@ -117,24 +109,13 @@ class Trackers:
         points[~(np.abs(points) < FAR).all(-1)] = np.nan
         count = len(self.controls)
         turns = np.full((count, 3, 3), np.nan) if turns is None else np.asarray(turns, float)
-        recent, level, reach, filtered = np.concatenate([memory.recent[1:], points[None]]), 0.0, ACCELERATION * self.dt ** 2, memory.points
-        if self.steady:
-            if filtered is None:
-                filtered = Motion(np.where(np.isfinite(points), points, 0.0), np.zeros_like(points), _LITTLE)
-            fresh = ~np.isfinite(memory.recent[-1]) & np.isfinite(points)
-            filtered = but(filtered, place=np.where(fresh, points - filtered.change, filtered.place))
-            level = noise(recent)
-            filtered = filtered.towards(points, reach / level if level > 0.0 else np.inf)
-            points = np.where(np.isfinite(points), filtered.place, np.nan)
-        after = self._followed(memory, points, turns, BLUR * level)
-        found = after.pose
+        recent = np.concatenate([memory.recent[1:], points[None]])
         if not self.steady:
-            return self._planted(but(after, recent=recent), found, points)
-        if np.abs(less(found, memory.shown.place)).max() > _JUMP:
-            shown = Motion(found, np.zeros(WIDTH), _LITTLE)
-        else:
-            near = memory.shown.place + less(found, memory.shown.place)
-            shown = memory.shown.towards(near, reach / (ROUGH + 2.0 * level))
+            after = but(self._followed(memory, points, turns, 0.0), recent=recent)
+            return self._planted(after, after.pose, points)
+        filtered, points, level = quiet(memory.points, recent, points, self.dt)
+        after = self._followed(memory, points, turns, BLUR * level)
+        shown = smoothed(memory.shown, after.pose, level, self.dt)
         return self._planted(but(after, recent=recent, points=filtered, shown=shown), shown.place, points)
 
     def find(self, points: np.ndarray, velocities: np.ndarray | None = None, turns: np.ndarray | None = None
@@ -226,7 +207,9 @@ class Trackers:
         view_kernel(places, spun, here, turned, self.skeleton.offsets, SKELETON.offsets, LAGS, self.dt, memory.pose[GROUND], inputs, ground)
         expected, standing = self.network.predict(inputs)
         known = here[0].tobytes() + turned[0].tobytes()
-        calm, expected = self._calmed(memory, known, expected, ground)
+        calm = None
+        if self.steady:
+            calm, expected = calmed(memory.expected, known == memory.known, expected, ground, self.dt)
         mean = expected + FADING * memory.off
         goals, spun, hold, keep = np.empty_like(points), np.empty_like(turns), np.empty(len(points)), np.empty(len(points))
         goals_kernel(points, turns, ground, 1.0 / (EXACT_PLACE ** 2 + blur ** 2), EXACT_TURN ** -2.0, goals, spun, hold, keep)
@@ -237,25 +220,6 @@ class Trackers:
                             np.empty((len(SKELETON), 3)), np.empty((len(SKELETON), 3, 3)))
         seen_kernel(frame, ground, _WORLD, pose)
         return but(memory, pose=pose, before=memory.pose, off=less(frame, expected), standing=standing, expected=calm, known=known), energy
-
-    def _calmed(self, memory, known, expected, ground):
-        """What the network expects (D,), seen from ground (3,), without what wavers of it: in the world, as filtered, and seen from ground again.
-
-        known: what slots tell now; where that changes the network expects something else at once.
-        """
-        if not self.steady:
-            return None, expected
-        place, seen = np.empty(WIDTH), np.empty(WIDTH)
-        seen_kernel(expected, ground, _WORLD, place)
-        calm = memory.expected
-        if calm is None or np.abs(less(place, calm.place)).max() > _JUMP:
-            calm = Motion(place, np.zeros(WIDTH), _LITTLE)
-        elif known != memory.known:
-            calm = but(calm, place=place)
-        else:
-            calm = calm.towards(calm.place + less(place, calm.place), ACCELERATION * self.dt ** 2 / WAVERING)
-        seen_kernel(calm.place, _WORLD, ground, seen)
-        return calm, seen
 
     def _planted(self, memory, shown, points):
         """The memory with feet as they stand, and the pose to show. shown: (D,) the placed pose without. points: (n, 3) of trackers, NaN where not seen."""
