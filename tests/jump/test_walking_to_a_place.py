@@ -96,7 +96,7 @@ def test_his_legs_clear_the_edge_that_he_comes_down_from(person):
     made, jump = memory.plan, person.parts["jump"]
     start = replace(jump.start_of(person.start((0.0, 0.0, 0.0), 0.35)), single=0, bound=True)
     edge = over_ledge(replace(start, feet=start.feet + [0.0, 0.0, 3.8, 0.0, 0.0]), np.array([0.0, 0.01, 4.75]), 0.35, things).ledge
-    assert edge[1] == pytest.approx(4.4, abs=0.03) and edge[3] == pytest.approx(-1.0, abs=0.03) and edge[4] == pytest.approx(0.34)
+    assert edge.z == pytest.approx(4.4, abs=0.03) and edge.up_z == pytest.approx(-1.0, abs=0.03) and edge.high == pytest.approx(0.34)
     times = np.arange(made.touch_down - 0.1, made.touch_down + 0.12, 1 / 120)
     poses = [made.at(time) for time in times]
     corners = sole_corners(person.skeleton, *forward_kinematics(person.skeleton, np.array([p.root for p in poses]), np.array([p.rotations for p in poses])))

@@ -10,11 +10,11 @@ from .dynamics import (GRAVITY, MASS, BodyTables, Physique, centre_kernel, mass_
                        vectors)
 from .sloped_feet import LEVEL, landing_feet, raised, rise, soles, standing, striding_feet, uphill
 from .planted_pose import bend_kernel, nearest_kernel, stand_kernel, swivelled_kernel
-from .start import (FLAT, FOOT_FADE, HEEL_UP, NO_LEDGE, TAKE_OFF_REACH, TOES_DOWN, TOUCH_REACH, TRAIL, TURNED, Measures, Start, airtime_up, carried, measures,
+from .start import (FLAT, FOOT_FADE, HEEL_UP, TAKE_OFF_REACH, TOES_DOWN, TOUCH_REACH, TRAIL, TURNED, Ledge, Measures, Start, airtime_up, carried, measures,
                     over, stretched)
 
 __all__ = [
-    "DEEP", "FLAT", "FLEX", "FOOT_FADE", "GRAVITY", "HEEL_UP", "LEVEL", "MASS", "NO_LEDGE", "TAKE_OFF_REACH", "TOES_DOWN", "TOUCH_REACH", "TRAIL", "TURNED", "BodyTables",
+    "DEEP", "FLAT", "FLEX", "FOOT_FADE", "GRAVITY", "HEEL_UP", "LEVEL", "MASS", "Ledge", "TAKE_OFF_REACH", "TOES_DOWN", "TOUCH_REACH", "TRAIL", "TURNED", "BodyTables",
     "Measures", "Physique", "Start", "airtime_up", "along", "apex_airtime", "bend_kernel", "carriage", "carried", "centre_kernel", "flat_feet",
     "frame", "hermite", "landing_feet", "least_effort", "mass_of", "measures", "momentum_kernel", "monotone", "nearest_kernel",
     "over", "parts_kernel", "place_kernel", "pose_kernel", "raised", "rise", "soles", "stand_kernel", "stand_pelvis_kernel", "standing", "stretched", "striding_feet",

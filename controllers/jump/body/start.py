@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +18,6 @@ from .dynamics import BodyTables, Physique, centre_kernel, place_kernel
 from .sloped_feet import LEVEL, landing_feet, raised, rise, uphill
 from .planted_pose import stand_kernel
 
-NO_LEDGE = np.zeros(5)
-"""Where there is no edge."""
 FLAT = np.array([1.0, 0.0, 1.0])
 """What is left of a vector along the floor."""
 HEEL_UP, TOES_DOWN = 0.70, 0.30
@@ -40,6 +39,16 @@ TURNED = 0.2, 0.92
 """Which share of its turn a body has made as it leaves the floor and as it touches down."""
 
 
+class Ledge(NamedTuple):
+    """An edge: where it is, x, z [m]; which way along the floor it is higher, up_x, up_z of length 1; and by how much, high [m]."""
+
+    x: float
+    z: float
+    up_x: float
+    up_z: float
+    high: float
+
+
 @dataclass(frozen=True, eq=False)
 class Start:
     """From where a jump starts.
@@ -55,8 +64,7 @@ class Start:
     and a free leg as fast as it takes, too. slope: (2,) [m/m] how the ground rises along x and z on which it stands, its floor as high as that at here (2,) [m]; feet are then
     pitched against that ground. lands_on: (2,) how it rises where it lands. levels: (2,) how high each foot stands over the lower one's floor [m], as astride an edge.
     stays: who walks wants to come to rest where he lands. cramped: beyond that is no room to run on. along: he goes slowly, aside or backward, and goes on so. bound: he
-    walks, and pushes off the foot under him as those do, but to a place. ledge: (5,) the edge over which he leaps up or down: where it is x, z [m], which way (2,) along the floor it is higher, and
-    by how much [m]; zeros for none.
+    walks, and pushes off the foot under him as those do, but to a place. ledge: the edge over which he leaps up or down; None for none.
     """
 
     root: np.ndarray
@@ -83,7 +91,7 @@ class Start:
     cramped: bool = False
     along: bool = False
     bound: bool = False
-    ledge: np.ndarray = field(default_factory=lambda: NO_LEDGE)
+    ledge: Ledge | None = None
 
     def on(self, slope: np.ndarray, here: np.ndarray) -> Start:
         """The same of one who stands on ground that rises by slope (2,) [m/m], which is as high as his floor at here (2,) [m]."""

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from ...body import yaw
-from ..body import FLEX, NO_LEDGE, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, standing, turns, vectors
+from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, standing, turns, vectors
 from ..prior import BETWEEN, EACH, LEGS
 from .footing import FADE, MOMENT, faded
 from .ground_kernels import FREE, carry_on_kernel, ground_kernel
@@ -98,7 +98,7 @@ class Airborne:
             centres = np.stack([np.interp(until, np.concatenate([[0.0], self.after]), part) for part in np.concatenate([[way.land], self.sunk[0]]).T], 1)
             angles = self.carriage(self.down + until)
             self.swung = passing(physique, landing, way.lands, times, way.keys[3 * BETWEEN:, LEGS + EACH * (1 - way.lands):][:, :EACH], centres, angles,
-                                 self._upright(angles[:, 0], np.inf), start.lands_on, start.ledge if way.up < 0.0 else NO_LEDGE)
+                                 self._upright(angles[:, 0], np.inf), start.lands_on, start.ledge if way.up < 0.0 else None)
 
     def _landing_times(self, stand: float) -> np.ndarray:
         """When [s] after touch-down the rows of the prior are due: until the lowest point evenly, then as the body comes up to how

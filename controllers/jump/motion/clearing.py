@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...body import sole_corners
-from ..body import Physique, hermite, monotone, place_kernel, raised, rise
+from ..body import Ledge, Physique, hermite, monotone, place_kernel, raised, rise
 from ..prior import EACH
 from .ledge import over_lower
 from .swinging import FLEXED, LIFT
@@ -22,10 +22,10 @@ standard height; else the lower of both: who leaps down comes down beside it."""
 
 
 def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, arc: np.ndarray, left: np.ndarray, landing: np.ndarray, slope: np.ndarray,
-           lands_on: np.ndarray, ledge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+           lands_on: np.ndarray, ledge: Ledge | None) -> tuple[np.ndarray, np.ndarray]:
     """How deep (N, 2) [m] each foot of flying poses (N, 3), (N, J, 3, 3) is in the floor that it left or on which it lands, 0 where in neither, and whether
     its toes point down (N, 2). arc: (N, 3) [m] the centre of mass. left, landing: (2, 5) the feet as they stood and will stand, on floors that rise by slope and
-    lands_on (2,) [m/m]. ledge: the edge between, as in `Start`."""
+    lands_on (2,) [m/m]. ledge: the edge between."""
     body = physique.tables
     positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
     for root, pose, places, facing in zip(roots, local, positions, turned):
@@ -35,7 +35,7 @@ def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, arc: np.nda
     away = np.linalg.norm(corners[..., [0, 2]] - left[:, None, [0, 2]], axis=-1)
     early = ((np.arange(len(roots)) < 0.5 * len(roots)) & (arc[:, 1] >= arc[0, 1]))[:, None, None]
     floor = np.where((away < FROM * body.size) & early, floors[0], np.minimum(*floors))
-    if ledge.any():
+    if ledge is not None:
         floor = np.minimum(*floors) + over_lower(ledge, corners, body.size)
     deep = np.maximum((floor - corners[..., 1]).max(-1), 0.0)
     return np.where(deep > GRAZES * body.size, deep, 0.0), turned[:, body.hip + 2, 1, 2] < 0.0

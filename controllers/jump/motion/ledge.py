@@ -5,6 +5,7 @@ What is known of it is where his way crosses it, and that the floor is as high a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...navigation import floor_at
-from ..body import Start
+from ..body import Ledge, Start
 
 EACH, HIGHER = 0.02, 0.06
 """The way is looked at so often [m]; and who lands no more than the second higher or lower [m] leaps over no edge."""
@@ -35,12 +36,14 @@ def over_ledge(start: Start, place: np.ndarray, floor: float, around: Sequence[A
     for gone in np.arange(0.0, far, EACH):
         x, z = here + gone * way
         if (floor_at(x, z, around, high) - middle) * up > 0.0:
-            return replace(start, ledge=np.array([x, z, *np.sign(up) * way, abs(up)]))
+            toward = math.copysign(1.0, up)
+            return replace(start, ledge=Ledge(float(x), float(z), float(toward * way[0]), float(toward * way[1]), abs(up)))
     return start
 
 
-def over_lower(ledge: np.ndarray, places: np.ndarray, size: float, seldom: bool = False) -> np.ndarray:
-    """How much higher (...) [m] the floor at places (..., 3) is than the lower of both, beside an edge as in `Start.ledge`. size: over an adult's. seldom: whether they are looked at
-    seldom."""
-    beyond = (places[..., 0] - ledge[0]) * ledge[2] + (places[..., 2] - ledge[1]) * ledge[3]
-    return np.where(beyond > -BESIDE[seldom] * size, ledge[4], 0.0)
+def over_lower(ledge: Ledge | None, places: np.ndarray, size: float, seldom: bool = False) -> np.ndarray:
+    """How much higher (...) [m] the floor at places (..., 3) is than the lower of both, beside an edge; 0 beside none. size: over an adult's. seldom: whether they are looked at seldom."""
+    if ledge is None:
+        return np.zeros(places.shape[:-1])
+    beyond = (places[..., 0] - ledge.x) * ledge.up_x + (places[..., 2] - ledge.z) * ledge.up_z
+    return np.where(beyond > -BESIDE[seldom] * size, ledge.high, 0.0)

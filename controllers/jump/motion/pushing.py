@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..body import NO_LEDGE, Physique, Start, hermite, monotone, standing, turns, vectors
+from ..body import Physique, Start, hermite, monotone, standing, turns, vectors
 from ..prior import BETWEEN, EACH, LEGS
 from .airborne import GROUND_RATE, Airborne
 from .clearing import ROWS as LIFT_ROWS
@@ -173,7 +173,7 @@ class Pushing(Airborne):
         low, room = float(lowest(self.physique, side, self.start.root[None], self.start.rotations[None], *ground)[0]), CLEARS * self.physique.size
         clears = min(low, room) + max(room - low, 0.0) * np.minimum(self.times[some] / SOON, 1.0)
         return lifted(self.physique, side, *ground, swung[some], clears, self.angles[some], self.offsets[some], self.turns[some], self.centres[some], self.feet[some], self.start.root,
-                      FOLDS if self.start.along else 0.0, self.start.ledge if up else NO_LEDGE)
+                      FOLDS if self.start.along else 0.0, self.start.ledge if up else None)
 
     def _stand(self, spin: np.ndarray, first: int) -> None:
         """Pose the body over its feet from sample `first` on, so that the pelvis leaves with an extra spin (3,)."""

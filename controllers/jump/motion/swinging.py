@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...body import sole_corners
-from ..body import FLEX, NO_LEDGE, Physique, carriage, hermite, monotone, place_kernel, raised, rise, turns
+from ..body import FLEX, Ledge, Physique, carriage, hermite, monotone, place_kernel, raised, rise, turns
 from ..prior import BETWEEN, EACH
 from .going_slowly import FOLDS
 from .ground_kernels import FREE, ground_kernel
@@ -25,20 +25,20 @@ def free_leg(body, lands: int) -> slice:
 
 
 def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarray, rows: np.ndarray, centres: np.ndarray, angles: np.ndarray, upright: np.ndarray,
-            slope: np.ndarray, ledge: np.ndarray):
+            slope: np.ndarray, ledge: Ledge | None):
     """How the leg swings of who lands on the other, `lands`: as recorded in rows (K - 1, EACH) [rad] at times (K,) [s] after touch-down, its knee bent by as much more
     as keeps its foot off the floor until the lowest point: recorded bodies sink less over it.
 
     landing: (2, 5) the feet on the floor. centres: (BETWEEN + 1, 3) [m] the mass centre until the lowest point, angles (BETWEEN + 1, 11) [rad] and upright
-    (BETWEEN + 1, 3, 3) how the body is carried and its pelvis turned. slope: (2,) [m/m] how the ground rises; ledge: the edge down which it came, as in `Start`. What is given is a function of times, see `keyed_leg`.
+    (BETWEEN + 1, 3, 3) how the body is carried and its pelvis turned. slope: (2,) [m/m] how the ground rises; ledge: the edge down which it came. What is given is a function of times, see `keyed_leg`.
     """
     until = times[:BETWEEN + 1]
     feet = np.ones((len(until), 2, 6))
     feet[..., :5], feet[:, 1 - lands, 5] = landing, FREE
     bent = np.zeros((len(until), 4, 3))
     bent[:, :EACH, 0] = rows[:len(until)]
-    more = lifted(physique, 1 - lands, landing[lands], slope, bent, (2.0 if ledge.any() else 1.0) * CLEARS * physique.size, angles, np.zeros((len(until), len(physique.skeleton), 3)), upright, centres, feet,
-                  centres[0] - [0.0, 0.05, 0.0], FOLDS if ledge.any() else 0.0, ledge)
+    more = lifted(physique, 1 - lands, landing[lands], slope, bent, (1.0 if ledge is None else 2.0) * CLEARS * physique.size, angles, np.zeros((len(until), len(physique.skeleton), 3)), upright, centres, feet,
+                  centres[0] - [0.0, 0.05, 0.0], 0.0 if ledge is None else FOLDS, ledge)
     rows = rows.copy()
     rows[:len(until)] += more
     rows[len(until):] += 0.5 * more[-1]
@@ -46,14 +46,15 @@ def passing(physique: Physique, landing: np.ndarray, lands: int, times: np.ndarr
 
 
 def lifted(physique: Physique, free: int, stands: np.ndarray, slope: np.ndarray, bent: np.ndarray, clears: np.ndarray | float, angles: np.ndarray, offsets: np.ndarray,
-           turned: np.ndarray, centres: np.ndarray, feet: np.ndarray, root: np.ndarray, folds: float = 0.0, ledge: np.ndarray = NO_LEDGE) -> np.ndarray:
+           turned: np.ndarray, centres: np.ndarray, feet: np.ndarray, root: np.ndarray, folds: float = 0.0, ledge: Ledge | None = None) -> np.ndarray:
     """By how much more (M, EACH) [rad] a leg `free`, 0 left or 1 right, is to bend whose joints are turned by bent (M, 4, 3) [rad], so that its foot is so
     high (M,) [m] over the ground, see `lowest`: its knee, and its hip by so much of that as it folds, and what these can't its ankle. The other poses are as in `ground_kernel`."""
     body, count = physique.tables, len(physique.skeleton)
     joints, leg, flex = carriage.joints_of(physique.skeleton), free_leg(body, 1 - free), FLEX * physique.flexibility
     roots, local = np.empty((len(bent), 3)), np.tile(np.eye(3), (len(bent), count, 1, 1))
     more, wanted = np.zeros((len(bent), EACH)), bent[:, 1, 0].copy()
-    for _ in range(LIFTS[int(ledge.any())]):
+    edge = ledge is not None
+    for _ in range(LIFTS[edge]):
         leg_now = bent.copy()
         leg_now[:, :EACH, 0] += more
         local[:, leg] = turns(leg_now)
@@ -64,13 +65,13 @@ def lifted(physique: Physique, free: int, stands: np.ndarray, slope: np.ndarray,
         wanted += missing
         knee, ankle = bent[:, 1, 0], bent[:, 2, 0]
         more[:, 1] = np.minimum(wanted, np.maximum(knee, BENT)) - knee
-        more[:, 0] = -folds * (wanted - knee if ledge.any() else more[:, 1])  # a shank that is level swings no foot up
-        more[:, 2] = 0.0 if ledge.any() else np.maximum(ankle - TOES_UP * (wanted - knee - more[:, 1]), np.minimum(ankle, FLEXED)) - ankle
+        more[:, 0] = -folds * (wanted - knee if edge else more[:, 1])  # a shank that is level swings no foot up
+        more[:, 2] = 0.0 if edge else np.maximum(ankle - TOES_UP * (wanted - knee - more[:, 1]), np.minimum(ankle, FLEXED)) - ankle
     return more
 
 
-def lowest(physique: Physique, side: int, roots: np.ndarray, local: np.ndarray, stands: np.ndarray, slope: np.ndarray, ledge: np.ndarray = NO_LEDGE) -> np.ndarray:
-    """How high (M,) [m] the lowest of a foot is, 0 left or 1 right, in poses (M, 3), (M, J, 3, 3), over ground that rises by slope (2,) [m/m], and beside a ledge as in `Start`,
+def lowest(physique: Physique, side: int, roots: np.ndarray, local: np.ndarray, stands: np.ndarray, slope: np.ndarray, ledge: Ledge | None = None) -> np.ndarray:
+    """How high (M,) [m] the lowest of a foot is, 0 left or 1 right, in poses (M, 3), (M, J, 3, 3), over ground that rises by slope (2,) [m/m], and beside a ledge,
     and on which a foot `stands` (5,)."""
     positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
     for root, pose, places, facing in zip(roots, local, positions, turned):
