@@ -37,37 +37,39 @@ STRIDE, LANDS, FEET = (0.28, 0.34), -0.36, 3
 """His next foot comes down so far ahead of this one [m], and farther by so much for each m/s, as he is so far past it [m], at standard height; and so many feet are looked at."""
 
 
-def flies(far: float, up: float, velocity: np.ndarray, size: float, gravity: float) -> float:
-    """How long [s] somebody of a size over an adult's flies who goes so fast (3,) [m/s] and is to fly so far, and so far up [m]: as long as his speed takes, if he can."""
+def flies(far: np.ndarray | float, up: float, velocity: np.ndarray, size: float, gravity: float) -> np.ndarray:
+    """How long (...) [s] somebody of a size over an adult's flies who goes so fast (3,) [m/s] and is to fly so far (...), and so far up [m]: as long as his speed takes, if he can."""
     scale, pace = math.sqrt(size * 9.81 / gravity), max(float(np.linalg.norm(velocity * FLAT)), 1e-9)
-    usual = min(max(far / pace, min(airtime(velocity, size), FLIES[0]) * scale), FLIES[1] * scale)
-    return max(usual, apex_airtime(np.zeros(3), np.array([0.0, up, 0.0]), max(up, 0.0) + RISES * size, np.array([0.0, -gravity, 0.0])))
+    usual = np.clip(far / pace, min(airtime(velocity, size), FLIES[0]) * scale, FLIES[1] * scale)
+    return np.maximum(usual, apex_airtime(np.zeros(3), np.array([0.0, up, 0.0]), max(up, 0.0) + RISES * size, np.array([0.0, -gravity, 0.0])))
 
 
-def longer(rises: float, size: float, gravity: float) -> float:
-    """By what the push of somebody of a size over an adult's takes longer who leaves upward so fast [m/s]."""
-    return min(max(rises / (USUAL * math.sqrt(size * gravity / 9.81)), 1.0)**2, MOST)
+def longer(rises: np.ndarray | float, size: float, gravity: float) -> np.ndarray:
+    """By what (...) the push of somebody of a size over an adult's takes longer who leaves upward so fast (...) [m/s]."""
+    return np.clip(rises / (USUAL * math.sqrt(size * gravity / 9.81)), 1.0, math.sqrt(MOST))**2
 
 
-def changes(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, now: bool = True) -> float:
-    """By how much of his speed somebody changes it who goes so fast (3,) [m/s] and leaps off the foot that stands to a place (3,), off a floor [m]; infinite where that foot does not send
-    him there. now: whether that moment is, or to come."""
+def changes(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, gone: np.ndarray | float = 0.0, now: bool = False) -> np.ndarray:
+    """By how much (...) of his speed somebody changes it who goes so fast (3,) [m/s] and, so far (...) [m] on, leaps off the foot that stands to a place (3,), off a floor [m]; infinite where that foot does not
+    send him there. now: whether that moment is, or to come."""
     size, pace = physique.size, max(float(np.linalg.norm(goes)), 1e-9)
-    scale, way = math.sqrt(size * 9.81 / gravity), (place - start.centre) * FLAT
-    up, pushed = float(place[1]) - floor - LOWER * size, 0.5 * PUSHES * scale
-    far = float(np.linalg.norm(way - pushed * (start.velocity * FLAT + goes) - TRAILS * goes))
-    time = flies(far, up, start.velocity, size, gravity)
+    centre = start.centre + np.asarray(gone)[..., None] * goes / pace
+    scale, way = math.sqrt(size * 9.81 / gravity), (place - centre) * FLAT
+    up, pushed, speed = float(place[1]) - floor - LOWER * size, 0.5 * PUSHES * scale, start.velocity * FLAT
+    time = flies(np.linalg.norm(way - pushed * (speed + goes) - TRAILS * goes, axis=-1), up, start.velocity, size, gravity)
     lasts = longer(up / time + 0.5 * gravity * time, size, gravity)
-    pushed *= lasts
-    wanted = (way - pushed * start.velocity * FLAT) / (pushed + time + TRAILS)
-    along = float(wanted @ goes) / pace**2
-    aside = float(np.linalg.norm(wanted - along * goes)) / pace
-    if not LEAVES[not now] <= along <= LEAVES[2] or aside > ASIDE[not now]:
-        return math.inf
-    velocity, _ = sent(physique, start, wanted, floor, gravity, time, lasts)
-    missed = velocity - wanted
-    ahead = float(missed @ goes) / pace**2
-    return abs(along - 1.0) if abs(ahead) <= MISSES[0] and float(np.linalg.norm(missed - ahead * goes)) <= (MISSES[1] * pace if now else math.inf) else math.inf
+    pushes = (pushed * lasts)[..., None]
+    wanted = (way - pushes * speed) / (pushes + time[..., None] + TRAILS)
+    velocity, _ = sent(physique, start, wanted, floor, gravity, time, lasts, centre)
+    (along, aside), (ahead, beside) = _parts(wanted, goes, pace), _parts(velocity - wanted, goes, pace)
+    sends = (LEAVES[not now] <= along) & (along <= LEAVES[2]) & (aside <= ASIDE[not now]) & (np.abs(ahead) <= MISSES[0])
+    return np.where(sends & (beside <= (MISSES[1] if now else math.inf)), np.abs(along - 1.0), math.inf)
+
+
+def _parts(velocity: np.ndarray, goes: np.ndarray, pace: float) -> tuple[np.ndarray, np.ndarray]:
+    """How much (...) of a velocity (..., 3) is along a way that is gone so fast (3,) [m/s], and beside it, over its pace."""
+    along = velocity @ goes / pace**2
+    return along, np.linalg.norm(velocity - along[..., None] * goes, axis=-1) / pace
 
 
 def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarray, floor: float, gravity: float, finds: Callable[[np.ndarray], bool], steep: float = 0.0, hands: bool = False,
@@ -80,12 +82,11 @@ def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarra
     way, foot = goes / pace, start.feet[start.single, :3]
     past = float((start.centre - foot) @ way)
 
-    def to_come() -> Iterator[tuple[float, float]]:
-        """The change of each moment to come, and by how much less it may be: from where he is now off this foot, and then off the next ones."""
-        def passing(start: Start, way: np.ndarray, past: float, floor: float, less: float) -> Iterator[tuple[float, float]]:
-            for far in np.arange(0.0, UNTIL * size - past, EACH):
-                yield changes(physique, _gone(start, far * way), pace * way, place, floor, gravity, False), less
-        yield from passing(_gone(start, EACH * way), way, past + EACH, floor, AS_GOOD[0])
+    def to_come() -> Iterator[tuple[np.ndarray, float]]:
+        """The changes (N,) of moments to come, and by how much less they may be: from where he is now off this foot, and then off each of the next ones."""
+        def passing(start: Start, way: np.ndarray, past: float, floor: float) -> np.ndarray:
+            return changes(physique, start, pace * way, place, floor, gravity, np.arange(0.0, UNTIL * size - past, EACH))
+        yield passing(_gone(start, EACH * way), way, past + EACH, floor), AS_GOOD[0]
         other, stride, lands, ahead = start, STRIDE[0] * size + STRIDE[1] * pace * math.sqrt(size), LANDS * size, way
         for number in range(1, FEET + 1):
             step = _turned(start if number == 1 else other, ahead, place, turns * stride / pace)
@@ -95,11 +96,12 @@ def moments(physique: Physique, start: Start, goes: np.ndarray, place: np.ndarra
             if not finds(there + stride * ahead):
                 return
             other = _stepped(_gone(other, (lands - past) * ahead) if number == 1 else other, stride, ahead)
-            yield from passing(other, ahead, lands, floor + number * stride * steep, AS_GOOD[1][hands])
-    now, better = changes(physique, start, goes, place, floor, gravity), False
+            yield passing(other, ahead, lands, floor + number * stride * steep), AS_GOOD[1][hands]
+    now, better = float(changes(physique, start, goes, place, floor, gravity, now=True)), False
     good = now < math.inf
     for change, less in to_come():
-        better, good = better or change < math.inf, good and now <= change + less
+        least = float(change.min(initial=math.inf))
+        better, good = better or least < math.inf, good and now <= least + less
         if better and not good:  # more would say no more
             break
     return good, better

@@ -88,20 +88,22 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
 
 
-def sent(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, flies: float, longer: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """How fast (3,) [m/s] somebody leaves the foot that stands, and where (3,) [m], along the floor, who is to leave as near to so fast (3,) as it can, and flies so long [s]. longer: by what his push
-    takes longer than usual."""
+def sent(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, flies: np.ndarray | float, longer: np.ndarray | float = 1.0,
+         centre: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """How fast (..., 3) [m/s] somebody leaves the foot that stands, and where (..., 3) [m], along the floor, who is to leave as near to so fast (..., 3) as it can, and flies so long (...) [s]. longer: (...)
+    by what his push takes longer than usual. centre: (..., 3) [m] of his mass, where that is not the start's."""
     assert start.single is not None
     body, size = physique.tables, physique.size
-    pushes = longer * PUSHES * math.sqrt(size * 9.81 / gravity)
+    centre = start.centre if centre is None else centre
+    pushes = np.asarray(longer * PUSHES * math.sqrt(size * 9.81 / gravity))
     foot = start.planted(floor, body)[start.single]
     ball, turned = foot[:3] * FLAT, yaw(foot[3])
-    rate = math.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / max(float(start.centre[1]) - floor, 0.3 * size))
-    cosh, sinh = math.cosh(rate * pushes), math.sinh(rate * pushes)
-    here, speed = start.centre * FLAT, start.velocity * FLAT
-    pressed = turned.T @ (here + (speed * cosh - goes) / (rate * sinh) - ball)
+    rate = np.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / np.maximum(centre[..., 1] - floor, 0.3 * size))[..., None]
+    cosh, sinh = np.cosh(rate * pushes[..., None]), np.sinh(rate * pushes[..., None])
+    here, speed = centre * FLAT, start.velocity * FLAT
     wide = WITHIN[0] * HALF_SOLE * size
-    pressed = ball + turned @ [min(max(pressed[0], -wide), wide), 0.0, min(max(pressed[2], -WITHIN[1] * size), body.tip[2] - WITHIN[2] * size)]
+    pressed = np.clip((here + (speed * cosh - goes) / (rate * sinh) - ball) @ turned, [-wide, 0.0, -WITHIN[1] * size], [wide, 0.0, body.tip[2] - WITHIN[2] * size])
+    pressed = ball + pressed @ turned.T
     return (here - pressed) * rate * sinh + speed * cosh, pressed + (here - pressed) * cosh + speed * sinh / rate
 
 
