@@ -164,7 +164,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
         tilted = TILTED if start.runs else float(np.interp(fall, HARD, (1.0, TILTED)))
         height = max(min(heights.touch(trail * along, trail * (float(abs(lays @ yaw(start.lands)[:, 0])) if start.along else across)) - tilted * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
         land = goal * FLAT - trail * lays + [0.0, goal[1] + height, 0.0]
-        flight = float(airtime) if airtime is not None else flies(float(np.linalg.norm((land - leave) * FLAT)), float(land[1] - leave[1]), start.velocity, size, g) if start.bound else max(
+        flight = float(airtime) if airtime is not None else float(flies(float(np.linalg.norm((land - leave) * FLAT)), float(land[1] - leave[1]), start.velocity, size, g)) if start.bound else max(
             least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
             ((skips(start.velocity, size) if start.along else RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
         velocity = take_off_velocity(leave, land, flight, gravity)

@@ -211,7 +211,7 @@ class Running:
         lean = float((velocity - passing) @ along) / max(float(velocity[1]) - float(start.velocity[1]) + g * 0.2, 1.0)
         lead = min(2.0 * lean * self.heights.stand - behind, most)
         if start.along:
-            lead = behind + (longer(float(velocity[1]), self.physique.size, g) if start.bound else 1.0) * PUSHES * math.sqrt(9.81 * self.physique.size / g) * speed
+            lead = behind + (float(longer(float(velocity[1]), self.physique.size, g)) if start.bound else 1.0) * PUSHES * math.sqrt(9.81 * self.physique.size / g) * speed
 
         def above(yielding: float, contact: float) -> float:
             """How much too high [m] the body leaves if the foot gives so long [s]."""
