@@ -14,18 +14,23 @@ def hand(t):
     return np.sin(t * [5.1, 3.3, 7.0] + [0.0, 1.0, 2.0]) * [0.3, 0.2, 0.1] + 0.1 * np.sin(t * [11.0, 9.0, 13.0]) + 0.02 * np.sin(t * [33.0, 29.0, 37.0])
 
 
-def played(rate, unrest, loss, clock, seed=1):
-    """What is seen at 60 frames a second of packets that are late by |normal| of `unrest` [s] and lost by a share; and when."""
+def played(rate, unrest, loss, clock, seed=1, hold=0.0, start=1.0):
+    """What is seen at 60 frames a second of packets that are late by |normal| of `unrest` [s], lost by a share, and about once a second held up for `hold` [s] and handed over at once; and when."""
     rng = np.random.default_rng(seed)
     sent = np.arange(0.0, SECONDS, 1.0 / rate)
     sent = sent[rng.random(len(sent)) >= loss]
     arrived = sent + LATENCY + np.abs(rng.normal(0.0, unrest, len(sent)))
-    if clock:  # they may overtake each other
+    moment = 1.0
+    while hold and moment < SECONDS:
+        moment += rng.uniform(0.7, 1.3)
+        held = (arrived >= moment) & (arrived < moment + hold)
+        arrived[held] = moment + hold + 2e-4 * np.arange(held.sum())
+    if clock and not hold:  # they may overtake each other
         order = np.argsort(arrived, kind="stable")
         sent, arrived = sent[order], arrived[order]
     else:
         arrived = np.maximum.accumulate(arrived)
-    line, times, seen, k = Timeline(), np.arange(1.0, SECONDS - 0.1, 1 / 60), [], 0
+    line, times, seen, k = Timeline(), np.arange(start, SECONDS - 0.1, 1 / 60), [], 0
     for now in times:
         while k < len(sent) and arrived[k] <= now:
             line.heard(arrived[k], hand(sent[k]), sent[k] if clock else None)
@@ -118,33 +123,14 @@ def test_packets_that_are_late_by_as_much_as_they_are_apart_are_never_flown_off_
     assert 0.03 < off < 0.8
 
 
-def stalled(rate, unrest, hold, clock, seed=2):
-    """What is seen of a network that holds packets up for `hold` [s] about once a second and then hands them over at once; how far off [m], and the pace."""
-    rng, sent = np.random.default_rng(seed), np.arange(0.0, SECONDS, 1.0 / rate)
-    sent = sent[rng.random(len(sent)) >= 0.02]
-    arrived = sent + LATENCY + np.abs(rng.normal(0.0, unrest, len(sent)))
-    moment = 1.0
-    while moment < SECONDS:
-        moment += rng.uniform(0.7, 1.3)
-        held = (arrived >= moment) & (arrived < moment + hold)
-        arrived[held] = moment + hold + 2e-4 * np.arange(held.sum())
-    arrived = np.maximum.accumulate(arrived)
-    line, times, seen, k = Timeline(), np.arange(3.0, SECONDS - 0.1, 1 / 60), [], 0
-    for now in times:
-        while k < len(sent) and arrived[k] <= now:
-            line.heard(arrived[k], hand(sent[k]), sent[k] if clock else None)
-            k += 1
-        seen.append(line.at(now))
-    off = np.linalg.norm(seen - hand(times - LATENCY - unrest * np.sqrt(2 / np.pi) - 1.0 / rate), axis=-1)
-    return off, line.period
-
-
 @pytest.mark.parametrize("clock", [False, True])
 @pytest.mark.parametrize("rate", [60, 90, 144])
 @pytest.mark.parametrize("hold", [0.08, 0.14, 0.3])
 def test_packets_that_were_held_up_and_come_at_once_are_told_apart(hold, rate, clock):
     """Counted as so many that were lost, they would be from times to come: the pace is kept, and most moments are met."""
-    off, period = stalled(rate, 0.002, hold, clock)
+    unrest = 0.002
+    times, seen, period = played(rate, unrest, 0.02, clock, 2, hold, 3.0)
+    off = np.linalg.norm(seen - hand(times - LATENCY - unrest * np.sqrt(2 / np.pi) - 1.0 / rate), axis=-1)
     assert period == pytest.approx(1.0 / rate, rel=0.02)
     assert np.quantile(off, 0.5 if hold < 0.2 else 0.3) < 0.004
 
