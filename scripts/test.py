@@ -1,8 +1,8 @@
 """Set Gambol up with what its tests need, if need be, and run them.
 
-    python3 scripts/test.py [arguments of pytest]
+    python3 scripts/test.py [--thorough] [arguments of pytest]
 
-Without arguments all tests are run, on as many cores as there are, up to eight.
+Without arguments all tests are run, on as many cores as there are, up to eight. With --thorough alone also the cases that are left out of families of slow ones.
 """
 
 import sys
@@ -14,7 +14,8 @@ ALL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
 
 def main() -> int:
     _setup.ready("test")
-    return _setup.run("-m", "pytest", *(sys.argv[1:] or ALL), folder=_setup.ROOT)
+    given = sys.argv[1:]
+    return _setup.run("-m", "pytest", *([*ALL, *given] if given in ([], ["--thorough"]) else given), folder=_setup.ROOT)
 
 
 if __name__ == "__main__":

@@ -56,13 +56,37 @@ def batch(request):
 
 def pytest_addoption(parser):
     parser.addoption("--times", type=int, default=1, help="try each law on so many times the examples")
+    parser.addoption("--thorough", action="store_true", help="try all cases of tests that are marked `few`, too, and films of many people to their ends")
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "few(count): all cases tell of one thing and each takes seconds: so many of them, spread evenly, unless --thorough or a case is named")
 
 
 def pytest_collection_modifyitems(config, items):
+    if not config.option.thorough and not any("[" in arg for arg in config.args):
+        left_out = {item for cases in _families(items) for item in cases if item not in _spread(cases)}
+        config.hook.pytest_deselected(items=list(left_out))
+        items[:] = [item for item in items if item not in left_out]
     laws = {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}
     for law in laws if config.option.times > 1 else ():
         own = law._hypothesis_internal_use_settings
         law._hypothesis_internal_use_settings = settings(own, max_examples=own.max_examples * config.option.times)
+
+
+def _families(items):
+    """The cases of each test that is marked `few`, in their order."""
+    found = {}
+    for item in items:
+        if item.get_closest_marker("few"):
+            found.setdefault((item.path, item.originalname), []).append(item)
+    return found.values()
+
+
+def _spread(cases):
+    """Those of a test's cases that are tried in any case: as many as its mark says, the first and the last among them."""
+    count = cases[0].get_closest_marker("few").args[0]
+    return {cases[round(k * (len(cases) - 1) / max(count - 1, 1))] for k in range(min(count, len(cases)))}
 
 
 def pytest_sessionstart(session):

@@ -224,6 +224,7 @@ def test_where_something_would_be_touched_the_body_is_seen_as_it_would_lie_in_it
     assert previews(far)[0].touch is None
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("move", [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0)])
 @pytest.mark.parametrize("strafe", [False, True])
 def test_who_holds_it_until_the_ring_stops_leaps_as_far_as_he_can(somebody, move, strafe):
@@ -242,6 +243,7 @@ def test_who_holds_it_until_the_ring_stops_leaps_as_far_as_he_can(somebody, move
     assert far > 0.85 * reach(np.arctan2(-move[0], move[1]) if strafe else 0.0)
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(("high", "away"), [(0.3, 0.6), (0.3, 1.0), (0.4, 0.8), (0.5, 0.6)])
 @pytest.mark.parametrize("hold", [0.9, 1.4, 2.0])
 def test_who_pushes_the_ring_far_onto_a_box_lands_on_it(somebody, high, away, hold):
@@ -255,6 +257,7 @@ def test_who_pushes_the_ring_far_onto_a_box_lands_on_it(somebody, high, away, ho
     assert not told and timeline.now.after.characters[0].state.floor == pytest.approx(high)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("body", [{}, {"height": 1.2}, {"height": 2.1}, {"strength": 0.7}, {"strength": 2.0}])
 def test_where_the_ring_stops_is_little_beyond_what_bodies_reach(somebody, body):
     who = person(physique=Physique(**body)) if body else somebody

@@ -51,6 +51,7 @@ def test_a_log_is_filmed_side_by_side_as_it_was_seen(log, tmp_path):
     assert walked[100] == moments[100].after.characters[0].state.pose.root[2]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("fps", [30, 24, 144])
 def test_a_part_of_a_log_at_any_rate_shows_the_same_moments(log, tmp_path, fps):
     gambol("render", "--replay", log, "-o", tmp_path / "all", "--size", "16x16", "--fps", 60)

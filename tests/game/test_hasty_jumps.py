@@ -103,6 +103,7 @@ def test_who_holds_the_stick_as_he_lands_on_both_feet_walks_on_as_he_rises(someb
     assert walks < soon
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("run, high, then", [(1.0, 0.36, AHEAD), (0.5, 0.32, AHEAD), (1.0, 0.58, BACK)])
 def test_nobody_is_told_that_he_cannot_leap_before_he_is_refused(somebody, run, high, then):
     """Who let go of the key waits for his feet, and was told in turn that it is too far, too near, and what he would hit, until he leapt. Who aims on the move was told of each moment's pace."""

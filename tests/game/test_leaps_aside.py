@@ -53,6 +53,7 @@ def told(someone, state, aside, far, path=False):
     return states, None, place, script
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("path", [False, True])
 @pytest.mark.parametrize("aside", [40.0, -40.0, -60.0])
 def test_who_has_time_for_a_step_turns_to_the_place_and_leaps_on_along_the_line_to_it(someone, under_way, aside, path):
@@ -69,6 +70,7 @@ def test_who_has_time_for_a_step_turns_to_the_place_and_leaps_on_along_the_line_
         assert abs(math.remainder(float(states[-1].ground[2]) - math.atan2(*way), math.tau)) < 0.75, "the steps before it turned him most of the way"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("aside, far", [(40.0, 0.8), (-60.0, 0.8), (90.0, 1.0)])
 def test_what_is_near_and_aside_is_leapt_to_at_once_or_after_a_stop(someone, under_way, aside, far):
     for state in under_way:

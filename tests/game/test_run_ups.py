@@ -88,6 +88,7 @@ def landed(states):
     return next(n for n, s in enumerate(states) if s.active == "locomotion" and any(now.active == "jump" for now in states[:n]))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("far, askew", [(9.0, 0.5), (9.3, 0.0), (9.6, 0.5), (9.9, 0.0)])
 def test_who_has_just_landed_from_a_run_stops_before_what_he_can_not_leap_from_there(library, far, askew):
     """He went on with his leap in mind, and through its edge."""
@@ -172,6 +173,7 @@ def running(who, things, floor, far, held=True):
     return states
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("things, floor, far", [((box(-3.0, 1.0, 8.0), box(6.1, 1.0)), 1.0, 5.0), ((box(5.3, 0.35, 8.0),), 0.0, 5.3), ((box(5.6, 0.4, 0.15),), 0.0, 5.6),
                                                 ((box(5.3, 0.25, 8.0),), 0.0, 5.3)])
 def test_a_leap_held_at_a_run_goes_off_at_the_last_footfall_and_he_runs_on(library, things, floor, far):
@@ -269,6 +271,7 @@ def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=420):
     return states, known
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("things, floor, far", [((box(5.0, 0.33),), 0.0, 5.0), ((box(-3.0, 1.0, 8.0), box(7.0, 1.0)), 1.0, 5.0), ((box(5.0, 1.8),), 0.0, 5.0)])
 @pytest.mark.parametrize("run", [0.0, 0.9])
 def test_hands_that_go_straight_at_what_is_ahead_come_to_rest_before_it_and_are_not_led_aside(library, things, floor, far, run):

@@ -20,8 +20,8 @@ from gambol.game.world import RATE, Watches
 from gambol.game.world.learnt_methods import methods
 from stand_in import same
 
-CROWD, BEGINNING = 20, 2.5
-"""More people than that cost as much as all other films together: of them the first seconds are enough."""
+CROWD, BEGINNING = 8, 2.5
+"""More people than that cost as much as all other films together: of them the first seconds are enough, unless tests are to be thorough."""
 NOTHING = "nothing to step on"
 COMPARED = 15
 """Every so many steps two runs are held against each other."""
@@ -31,7 +31,7 @@ def compared(scenario):
     """For how long [s] a film is made again: a minute of the medley, and the beginnings of the others."""
     if any(actor.tracks is not None for actor in scenario.actors):
         return 0.75
-    few = 4.0 if len(scenario.actors) <= 4 else 1.5 if len(scenario.actors) <= CROWD else 1.0
+    few = 4.0 if len(scenario.actors) <= 4 else 1.5 if len(scenario.actors) <= 20 else 1.0
     return scenario.duration if scenario.title == load("medley").title else 1.5 if scenario.followers else few
 
 
@@ -71,7 +71,7 @@ def made(request, walker):
     Who follows points walks after them: what makes a body of them plays no part, and costs a hundred times as much. Nor do overlays.
     """
     scenario, steps, moments = load(request.param).at_fps(4), [], []
-    long = scenario.duration if len(scenario.actors) <= CROWD else BEGINNING
+    long = scenario.duration if len(scenario.actors) <= CROWD or request.config.option.thorough else BEGINNING
     run, few = film.acts, compared(scenario)
 
     def heard(*asked):

@@ -165,6 +165,7 @@ def tapped(who, thing, run, press, ring, later):
     return states, aims, told
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("run", "far", "deep", "high", "press", "ring", "later"), [
     (0.463, 4.551, 0.848, 0.581, 4.799, 4.799, 0.6), (0.822, 5.12, 0.902, 0.57, 5.432, 5.432, 0.0), (0.359, 4.88, 1.975, 0.59, 4.483, 5.384, 0.0)])
 def test_who_stops_before_a_box_as_he_waits_leaps_onto_it_from_where_he_rests(somebody, run, far, deep, high, press, ring, later):
@@ -182,6 +183,7 @@ def test_a_ring_pushed_over_a_high_box_stops_where_legs_still_clear_its_edge(som
     assert states[-1].floor == pytest.approx(high, abs=0.01)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("high", "far"), [(0.47, 1.32), (0.4, 1.62), (0.3, 1.66)])
 def test_who_aims_far_over_a_box_from_near_by_is_off_soon_after_he_lets_go(somebody, high, far):
     """1.7 s went by: each millimetre that he still glided, another leap was asked, and looked for anew, and none of them could be made."""

@@ -83,6 +83,7 @@ def test_who_walks_or_runs_is_not_told_that_he_is_weak(locomotion, jump, speed):
     assert not any("weak" in why for why in told), told
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed", [0.8, 1.3, 3.0])
 def test_the_nearest_place_to_one_that_can_be_leapt_to_is_that_one(locomotion, jump, speed):
     """And who walks is told of one where the place itself is too far, though he can't leap where he stands."""

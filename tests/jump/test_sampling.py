@@ -24,6 +24,7 @@ def misses(found, wish):
     return np.linalg.norm(found.momenta - ADULT.mass * np.asarray(wish), axis=-1)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("wish", LEAPS, ids=str)
 def test_the_best_sample_is_the_most_balanced_of_the_nearest_tenth(wish):
     found = sampled(wish)

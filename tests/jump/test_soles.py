@@ -34,6 +34,7 @@ def gone(walker, state, velocity, steps):
     return state
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pace", [2.2, 2.8])
 def test_nobody_pushes_off_in_the_air_out_of_a_run_that_he_let_go(person, jump, pace):
     """Feet that were about to come down were taken for such as stand, and came down over the same time whatever the push took: 3 cm high while they pushed."""
@@ -51,6 +52,7 @@ def test_nobody_pushes_off_in_the_air_out_of_a_run_that_he_let_go(person, jump, 
     assert len(found) > 10 and max(found) < 0.014
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height", [0.9, 1.741])
 def test_no_sole_goes_through_the_floor_in_low_flights(height):
     """Toes that pointed down dragged through it, up to 2.7 cm deep, a child's by a twentieth of its height."""

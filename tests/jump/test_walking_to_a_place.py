@@ -79,6 +79,7 @@ def told(person, speed, up, beyond=0.35):
     return state.memory.memory, things
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("speed", [1.2, 1.6])
 @pytest.mark.parametrize("up", [0.2, 0.35, -0.2, -0.35])
 def test_onto_a_step_and_off_one_he_leaps_as_on_the_level(person, speed, up):

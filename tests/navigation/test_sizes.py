@@ -64,6 +64,7 @@ def test_who_is_tall_walks_up_stairs_that_are_too_high_for_others(library):
     assert child.status(last).kind == "failed" and np.hypot(*last.ground[:2]) < 0.05, "he does not walk there to be held up"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height, rise", [(1.0, 0.17), (1.2, 0.2), (1.35, 0.2)])
 def test_a_child_walks_up_the_stairs_of_grown_ups(library, height, rise):
     """Children of 1.1 m climb stairs of 17 cm, a larger share of their height than grown-ups do; and down again."""

@@ -158,6 +158,7 @@ def _placed(states):
                               np.stack([np.asarray(s.pose.rotations, float) for s in states]))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("frames, which", [*((frames, which) for frames in (6, 30, 50) for which in ([0], [1, 3])), (6, [0, 1, 2, 3]), (30, [0, 1, 2, 3])])
 def test_points_that_were_lost_come_back_without_a_pop(follower, clip, points, which, frames):
     """All of them for as long as the body is still near them: a body that has gone elsewhere meanwhile begins anew."""

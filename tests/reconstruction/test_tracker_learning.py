@@ -8,7 +8,8 @@ from gambol.controllers.reconstruction.database import Database, standing
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.pose_vector import encode
 from gambol.controllers.reconstruction.trackers import INPUTS, PLACES, Learner, Moments, Network, bodies, judged
-from gambol.controllers.reconstruction.trackers.learning import _JUDGED, _STANDARD, MEAN, UNSURE, adam_kernel, loss
+from gambol.controllers.reconstruction.trackers import learning
+from gambol.controllers.reconstruction.trackers.learning import _STANDARD, MEAN, UNSURE, adam_kernel, loss
 from gambol.controllers.reconstruction.trackers.network import OUTPUTS
 from gambol.controllers.reconstruction.trackers.wearing import exactly
 from dolls import shipped, strides
@@ -133,11 +134,12 @@ def test_bodies_are_symmetric_and_the_same_from_the_same_seed():
     assert np.linalg.norm(made[:, left], axis=-1).std() > 0.01
 
 
-def test_how_far_off_it_is_is_told_of_errors_as_they_are_and_half_of_what_they_have_to_do_with_each_other(known):
-    """Variances are those of its errors on what it is judged on, covariances half of them."""
-    moments, every = Moments.of(known), np.ones(len(PLACES), bool)
+def test_how_far_off_it_is_is_told_of_errors_as_they_are_and_half_of_what_they_have_to_do_with_each_other(known, monkeypatch):
+    """Variances are those of its errors on what it is judged on, covariances half of them; of few samples as of many."""
+    count, moments, every = 256, Moments.of(known), np.ones(len(PLACES), bool)
+    monkeypatch.setattr(learning, "_JUDGED", count)
     found = judged(shipped(), moments)
-    batch = moments.draw(_JUDGED, 0, _STANDARD + 1, exactly(_JUDGED, every, every))
+    batch = moments.draw(count, 0, _STANDARD + 1, exactly(count, every, every))
     errors = shipped().predict(batch.inputs)[0] - batch.truth
     covariance, told = errors.T @ errors / len(errors), found.spread(every, every)
     np.testing.assert_allclose(np.diagonal(told), np.diagonal(covariance), rtol=1e-4, atol=1e-9)

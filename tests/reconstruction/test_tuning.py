@@ -12,7 +12,7 @@ from gambol.controllers.files import ArraysError
 from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.pose_vector import encode
-from gambol.controllers.reconstruction.trackers import PLACES, Moments, Network, Tuner
+from gambol.controllers.reconstruction.trackers import PLACES, Moments, Network, Tuner, learning
 from gambol.game import cli
 from gambol.game.world import SHIPPED, methods, usual
 
@@ -81,8 +81,9 @@ def test_cut_off_it_goes_on_the_same(own, tmp_path):
         again.resume(tmp_path / "own-learning.npz")
 
 
-def test_the_command_teaches_and_the_network_is_taken(own, tmp_path):
+def test_the_command_teaches_and_the_network_is_taken(own, tmp_path, monkeypatch):
     """It is no surer than of half of what it was, and bends no joint less."""
+    monkeypatch.setattr(learning, "_JUDGED", 512)
     out = tmp_path / "mine.npz"
     done = CliRunner().invoke(cli.app, ["database", "tune", str(own[0]), "-o", str(out), "--batches", "10", "--share", "0.01"])
     assert done.exit_code == 0, done.output

@@ -10,6 +10,7 @@ the friction it needs. A and T follow from the way up and the speed upward, lean
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +21,7 @@ _POWERS = np.arange(len(LEVEL))
 _UP = np.array([0.0, 1.0, 0.0])
 
 
+@lru_cache(2)
 def moments(springs: bool = False) -> tuple[float, float, float]:
     """∫ φ, ∫ s φ and ∫ s² φ over a push from a crouch, or off a springy landing."""
     shape = SPRING if springs else LEVEL
