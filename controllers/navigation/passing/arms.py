@@ -37,19 +37,23 @@ LOW = 0.15
 """Arms that clear the top or underside of something by so much [m] are not drawn in at all."""
 
 FAST, NEARER, RUNS, HALFLIFE = 4.0, 6.0, 1.5, 0.08
-"""Arms that would have to go out faster than the first [rad/s], or come in by so much more for each m/s that the body is faster than the third, as of who comes to a wall at a run, do so with this half-life [s]."""
+"""Arms that would have to go out faster than the first [rad/s], or come in by so much more for each m/s that the body is faster than the third, as of who comes to a wall at a run, go as fast as
+that where it is the body that moves, and the rest of the way with this half-life [s]; all of it where things come, go or move."""
 GONE = 1e-4
 """Less than this is nothing [rad]."""
+SHAPE = 6
+"""So many numbers tell where something stands, and how large it is."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arms:
     """How far arms are drawn in. wanted: (2, 3) by how much [rad] upper arms turn for what stands there, rotation vectors in the chest's frame. left, rate: (2, 3) by how much
-    more they are turned than that [rad], and how fast that changes [rad/s]."""
+    more they are turned than that [rad], and how fast that changes [rad/s]. things: what was near, as of `_near`."""
 
     wanted: np.ndarray
     left: np.ndarray
     rate: np.ndarray
+    things: tuple[tuple[float, ...], ...] = ()
 
 
 FREE = Arms(*np.zeros((3, 2, 3)))
@@ -58,7 +62,8 @@ FREE = Arms(*np.zeros((3, 2, 3)))
 def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any], arms: Arms | None, speed: float, dt: float) -> tuple[Pose, Arms | None]:
     """The pose as of `drawn_in`, without a jump where things came, went or moved in the step of dt seconds that led to it. arms: what this gave a step before; None of who was
     free. speed: of the body [m/s]."""
-    near = drawn_in(skeleton, pose, ground, around)
+    things = tuple(_near(float(ground[0]), float(ground[1]), around))
+    near = _drawn(skeleton, pose, ground, things)
     if arms is None and near is pose:
         return pose, None
     arms, upper = arms or FREE, [chain[0] for chain in _chains(skeleton.names)]
@@ -66,19 +71,24 @@ def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequenc
     wanted = log(near.rotations[upper] @ np.swapaxes(own, -1, -2)) if near is not pose else FREE.wanted
     change = wanted - arms.wanted
     inwards = np.linalg.norm(wanted, axis=-1, keepdims=True) > np.linalg.norm(arms.wanted, axis=-1, keepdims=True)
-    sudden = np.linalg.norm(change, axis=-1, keepdims=True) > (FAST + NEARER * max(speed - RUNS, 0.0) * inwards) * dt
+    most, much = (FAST + NEARER * max(speed - RUNS, 0.0) * inwards) * dt, np.linalg.norm(change, axis=-1, keepdims=True)
+    same = {thing[:SHAPE] for thing in things} == {thing[:SHAPE] for thing in arms.things}
+    sudden = np.where(much > most, 1.0 - same * most / np.maximum(much, GONE), 0.0)
     left, rate = settle(arms.left - sudden * change, arms.rate, HALFLIFE, dt)
     if np.abs(left).max() < GONE:
-        return near, None if near is pose else Arms(wanted, FREE.left, FREE.rate)
+        return near, None if near is pose else Arms(wanted, FREE.left, FREE.rate, things)
     rotations = np.array(pose.rotations)
     rotations[upper] = exp(wanted + left) @ own
-    return Pose(pose.root, rotations), Arms(wanted, left, rate)
+    return Pose(pose.root, rotations), Arms(wanted, left, rate, things)
 
 
 def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any]) -> Pose:
     """The pose of one walker at a ground frame (3,) x, z [m], heading [rad], his arms drawn in where they come near to boxes and pillars. The very same
     where nothing is near, or where he stands in something."""
-    things = _near(float(ground[0]), float(ground[1]), around)
+    return _drawn(skeleton, pose, ground, _near(float(ground[0]), float(ground[1]), around))
+
+
+def _drawn(skeleton: Skeleton, pose: Pose, ground: np.ndarray, things: Sequence[tuple[float, ...]]) -> Pose:
     chains = _chains(skeleton.names)
     if not things or not len(chains):
         return pose
@@ -89,7 +99,7 @@ def drawn_in(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequenc
 
 
 def _near(x: float, z: float, around: Sequence[Any]) -> list[tuple[float, ...]]:
-    """What is near enough: shapes as of `shapes_of`, how low and how high they reach [m], ramps where they are nearest."""
+    """What is near enough: shapes of SHAPE numbers as of `shapes_of`, how low and how high they reach [m], ramps where they are nearest."""
     found = []
     for thing in around:
         if is_box(thing):
