@@ -159,4 +159,4 @@ def test_arms_come_in_as_fast_as_a_runner_comes_to_a_wall(locomotion):
             tips = end_positions(skeleton, *forward_kinematics(skeleton, shown.root, shown.rotations))
             found.append(max(tips[skeleton.end_index[side + "Hand"], 2] - 0.6 for side in ("Left", "Right")))
         deep[speed] = max(found)
-    assert deep[3.0] < 0.0 and deep[0.0] < 0.03, deep
+    assert max(deep.values()) < 0.0, deep
