@@ -56,7 +56,8 @@ class Arms:
     things: tuple[tuple[float, ...], ...] = ()
 
 
-FREE = Arms(*np.zeros((3, 2, 3)))
+_NONE = np.zeros((2, 3))
+FREE = Arms(_NONE, _NONE, _NONE)
 
 
 def drawn_on(skeleton: Skeleton, pose: Pose, ground: np.ndarray, around: Sequence[Any], arms: Arms | None, speed: float, dt: float) -> tuple[Pose, Arms | None]:
