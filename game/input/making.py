@@ -12,7 +12,7 @@ from gambol.controllers.contract import CharacterState, Intent, Leap, Status, bu
 from gambol.controllers.jump import MOMENTARY, Jumping, walks_to
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
-from .aside import ASKS, NEAREST, Known, askew, bent, beside, lands, room
+from .aside import NEAREST, UNDER_WAY, Known, bent, beside, lands, room
 from .moves import Jump, Move
 from .pilot import STEERING
 from .run_up import RunUp
@@ -35,8 +35,6 @@ PASSED = 0.12
 """A place farther behind than this [m] a run-up has gone past."""
 HOPS_UP = 0.4
 """What is higher over the ground than this [m] is hopped against, not onto."""
-UNDER_WAY = 0.7
-"""Who runs up to a jump faster than this [m/s] aims at it; who is slower would crouch for it."""
 LAST, BENDS = 0.3, 1.25
 """So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
 STANDS, STILL = 5.0, 0.1
@@ -155,11 +153,11 @@ class Making:
             ready = self.run_up.halt is not None or far <= (usual if jump.within is None else jump.within)
             leads = self._leads(move, jump, far) and (self.turns or beside(state, way)) and state.active == "locomotion" and self.run_up.halt is None
             if leads and (ready or far <= usual + room(state, way, pace_of(move))):
-                if far < NEAREST and self.aside.steps < 0:
-                    return replace(self, aside=Known(stops=True), turns=True), bent(state, 0.0, way)
+                if far < NEAREST and self.aside.lapsed:
+                    return replace(self, aside=Known(stops=True, steps=0), turns=True), bent(state, 0.0, way)
                 self, intent = replace(self, turns=True), bent(state, self.aside.pace or pace_of(move), way)
                 leap = replace(leap, heading=lands(state, way)) if beside(state, way) else leap
-            ready = ready and (not leads or (self.aside.once or abs(askew(state, way)) < ASKS) and far > NEAREST)
+            ready = ready and (not leads or far > NEAREST)
         elif far > NEAR and jump.heading is None:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
