@@ -12,7 +12,7 @@ from gambol.controllers.contract import CharacterState, Intent, Leap, Status, bu
 from gambol.controllers.jump import MOMENTARY, Jumping, walks_to
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
-from .aside import NEAREST, UNDER_WAY, Known, bent, beside, lands, room
+from .aside import ANEW, FAST, NEAREST, UNDER_WAY, Known, bent, beside, lands, room
 from .moves import Jump, Move
 from .pilot import STEERING
 from .run_up import RunUp
@@ -45,6 +45,13 @@ AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
 STRIDE = 0.8
 """And a walker so much farther off [m]: he chooses among his next footfalls."""
+
+LATE = 0.45
+"""Who runs, and would be there within this [s], leaps there no more: no foot brakes so much."""
+BRAKES = 2.5
+"""Who would come to rest, braking so hard [m/s²], no farther from the place than from where he can leap to it does; who would be farther turns back at a walk."""
+BEYOND, EACH, HIGHEST, EVEN = 2.0, 0.2, 2.0, 0.06
+"""Who turns back to a place finds even floor as far as the first before and behind [m], looked at so often [m]: nothing up to the third is higher than the fourth, or lower [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,9 +153,13 @@ class Making:
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
         runs = move.runs and not self.aside.stops
         if runs:
-            if not self.turns and (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
+            speed, behind = float(np.hypot(state.velocity[0], state.velocity[2])), bool(way @ np.array(in_world(state.ground, intent.velocity)) < -PASSED * _pace(intent))
+            if not self.turns and self._back(move, jump, state, far, speed, behind):
+                if abs(speed**2 / (2.0 * BRAKES) + (far if behind else -far)) < ANEW:
+                    return replace(self, aside=Known(stops=True, steps=0), turns=True), bent(state, 0.0, way)
+                self = replace(self, turns=True)
+            if not self.turns and behind:  # no run-up leads back
                 return replace(self, passed=self.asked > 0 and _straight(move)), intent
-            speed = float(np.hypot(state.velocity[0], state.velocity[2]))
             usual = AHEAD[0] + AHEAD[1] * speed * jump.slow + STRIDE * walks_to(state, leap)
             ready = self.run_up.halt is not None or far <= (usual if jump.within is None else jump.within)
             leads = self._leads(move, jump, far) and (self.turns or beside(state, way)) and state.active == "locomotion" and self.run_up.halt is None
@@ -171,6 +182,18 @@ class Making:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
         return replace(self, asked=self.asked + (runs or now is None), hops=hops), replace(intent, leap=leap)
+
+    def _back(self, move: Move, jump: Jump, state: CharacterState, far: float, speed: float, behind: bool) -> bool:
+        """Whether somebody who goes so fast [m/s] on a run-up turns back to a place that lies behind, so far away [m], or that no foot sends him to any more who asked for it: where all is even."""
+        late = self.asked > 0 and (behind or speed > FAST and far < LATE * speed)
+        if not (late or behind and self.steps == 0 and far > NEAREST) or state.active != "locomotion" or self.run_up.halt is not None or not _straight(move) or not self._leads(move, jump, far):
+            return False
+        assert jump.place is not None  # or nothing would lead there
+        floor, here, there = float(state.floor), np.asarray(state.ground[:2], float), np.array([jump.place[0], jump.place[2]])
+        if move.points and math.dist(move.points[-1], there) > NEAREST:
+            return False
+        ways = [here + far * (there - here) / max(math.dist(here, there), 1e-9) for far in np.arange(-BEYOND, far + BEYOND, EACH)]
+        return all(abs(floor_at(float(x), float(z), jump.around, floor + HIGHEST) - floor) < EVEN for x, z in ways) and abs(float(jump.place[1]) - floor) < EVEN
 
     def _leads(self, move: Move, jump: Jump, far: float) -> bool:
         """Whether somebody on a run-up has only the way left to where his jump leads, so far away [m]: he may turn to it, unless he was told how he lands."""
