@@ -45,14 +45,17 @@ AHEAD, LATE = (1.0, 0.7, 4.0), 10
 """That is played ahead for so long as he goes there, by these [s, m/s], at most the last [s]; a leap that has not gone off so many steps later is found out about anew."""
 UNDER_WAY = 0.7
 """Who runs up to a jump faster than this [m/s] aims at it; who is slower would crouch for it."""
-EACH, PLANS, COSTS = 12, 10, 4
-"""It is found out in pieces, so many in a step: a step that is played ahead is one, a plan that will do so many more, and what is found out about a leap so many for each that it costs."""
+EACH, PLANS, COSTS, WAITS = 12, 10, 4, 1
+"""It is found out in pieces, so many in a step: a step that is played ahead is one, so many more if he may leap in it, a plan that will do so many more, and what is found out about a leap so many for each that it
+costs."""
 IN_TIME, CHANGES = (3, 6), 20
 """Nobody asks whether he leaps in a moment that comes within so many steps: it is gone by when he knows; nor whether in a later one as that which he knows comes within the second. Another pace is taken up
 so many steps after he began to think of it."""
 SENDS, FAST, SENT = (1.2, 1.0), 2.3, 1.5
 """Nor whether a foot sends a runner aside of his way by more than the first [m/s], the second if he is faster than the third, or farther aside than the fourth [rad]: of 380 that were
 so in 1200 leaps and 3700 refusals, four were leapt."""
+HOPES = 1.1
+"""Who has not yet played ahead until he is as near as this [m] lets a leap go by that is none in stride: one may come."""
 PAST = 0.6
 """Who has it nearer than this [m], and no longer before him, has gone past it."""
 READY = 1.0
@@ -172,10 +175,11 @@ def waiting(state: CharacterState, intent: Intent) -> Intent:
 
 
 class _Played(NamedTuple):
-    """A leap that goes off as it was played ahead: after how many steps, and how good that is, as a time [s]."""
+    """A leap that goes off as it was played ahead: after how many steps, how good that is, as a time [s], and whether in stride."""
 
     number: int
     good: float
+    strides: bool
 
 
 class Ahead(Generic[S]):
@@ -222,21 +226,28 @@ class Ahead(Generic[S]):
         best, refused = None, None
         self.number = yield 0
         while goes.leaps and state.active != "jump" and number * self.dt < (seconds if best is None else min(seconds, best.good)):
-            if until is not None and self.number >= until or best is not None and self.number + IN_TIME[1] >= best.number or self._past(state):
+            if until is not None and self.number >= until or self._past(state):
                 break
+            if best is not None and self.number + IN_TIME[1] >= best.number:
+                if best.strides or float(np.hypot(*(self.place - state.ground[:2]))) < HOPES:
+                    break
+                best = None
             if way is not None:
                 way.append((goes, state))
             if intent is None:
                 goes, intent = goes.step(state, self.dt)
             intent = but(intent, around=self.around)
             soon = number <= self.number + IN_TIME[0]
-            if intent.leap is not None and not soon and not (refused is not None and refused.still(state, intent)) and self._sends(state) and self.controller.precondition(state, intent) >= READY:
+            asks = intent.leap is not None and not soon and not (refused is not None and refused.still(state, intent)) and self._sends(state)
+            if asks:
+                self.number = yield WAITS
+            if asks and self.controller.precondition(state, intent) >= READY:
                 made = yield from self._asked(state, intent)
                 refused = Asked("", intent, state)
                 if not isinstance(made, str) and number >= self.number and (until is None or self.number < until):
                     strides = made.take_off < SOON * math.sqrt(self.controller.size) and made.path.lands is not None
                     good = number * self.dt + made.take_off + LATER * (not strides)
-                    best = _Played(number, good) if best is None or good < best.good else best
+                    best = _Played(number, good, strides) if best is None or good < best.good else best
             state, _ = self.controller.step(state, waiting(state, intent), self.dt)
             intent, number = None, number + 1
             self.number = yield 1

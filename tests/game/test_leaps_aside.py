@@ -58,16 +58,18 @@ def told(someone, state, aside, far, path=False):
 @pytest.mark.parametrize("aside", [40.0, -40.0, -60.0])
 def test_who_has_time_for_a_step_turns_to_the_place_and_leaps_on_along_the_line_to_it(someone, under_way, aside, path):
     """It was refused, as too near for his run, or he sat down on the foot that had struck and stopped where he came down, facing on."""
+    strides = []
     for state in under_way:
         states, made, place, script = told(someone, state, aside, 2.2, path)
         assert made is not None, script.refused
         assert len(states) * DT < 2.0
         one, way = made.path.lands, place - states[-1].ground[:2]
-        assert one is not None, "he walks on from there"
-        landed = soles(made.feet[one:one + 1], someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0)
+        strides.append(one is not None)
+        landed = soles(made.feet if one is None else made.feet[one:one + 1], someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0)
         assert np.linalg.norm(landed - place) < 0.05
         assert abs(math.remainder(made.path.heading + made.path.turn - math.atan2(*way), math.tau)) < 0.3
         assert abs(math.remainder(float(states[-1].ground[2]) - math.atan2(*way), math.tau)) < 0.75, "the steps before it turned him most of the way"
+    assert any(strides), "he walks on from there"
 
 
 @pytest.mark.parametrize("aside, far", [(40.0, 0.8), (-60.0, 0.8), (90.0, 1.0)])
@@ -160,3 +162,12 @@ def test_who_walks_slowly_to_a_place_aside_goes_faster_and_leaps_on_one_foot(som
     for aside in (-40.0, 60.0):
         _, made, _, script = told(someone, state, aside, 2.0)
         assert made is not None and made.path.lands is not None, script.refused
+
+
+@pytest.mark.parametrize("speed, aside, far", [(3.0, 0.0, 1.3), (1.3, 180.0, 1.3), (2.5, 150.0, 1.3)])
+def test_who_is_told_of_a_place_that_he_runs_past_or_that_lies_behind_turns_back_and_leaps_there(someone, speed, aside, far):
+    """He was refused, and ran on."""
+    states, made, place, script = told(someone, at_a_run(someone, speed), aside, far)
+    assert made is not None, script.refused
+    feet = made.feet if made.path.lands is None else made.feet[made.path.lands:made.path.lands + 1]
+    assert np.linalg.norm(soles(feet, someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0) - place) < 0.05
