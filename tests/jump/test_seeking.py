@@ -46,7 +46,8 @@ def told(costs, known):
     for cost in costs:
         for piece in [sum(cost)] if known else cost:
             yield piece
-        answered.append((yield 0))
+        number = yield 0
+        answered.append(number)
         yield 1
     return answered
 
