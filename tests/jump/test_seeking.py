@@ -44,9 +44,8 @@ def told(costs, known):
     """Questions that cost so much each, in pieces, or at once where that is known already; in which step each was answered."""
     answered = []
     for cost in costs:
-        for piece in [sum(cost)] if known else cost:
-            yield piece
-        number = yield 0
+        for piece in [*([sum(cost)] if known else cost), 0]:
+            number = yield piece
         answered.append(number)
         yield 1
     return answered

@@ -21,8 +21,6 @@ HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
 """What the airtime is multiplied by until the arc clears what stands in its way."""
 LOWER, FASTER = (0.9, 0.8, 0.7), 1.25
 """And of who leaps off one foot that can't push as usual, so that he leaps lower, as long as he need not leave so many times as fast as he runs."""
-ASTRAY = 0.2
-"""Who would press farther outside his sole than this [m], at standard height, as he leaps as usual, leaps no lower either: of 71 runners who leapt lower none would have by more than 0.15."""
 WAYS = (False, False), (False, True), (True, True)
 """With which arms, down or not, and legs, drawn up or not, a body tries to pass what is in its way."""
 LITTLE, RISES = 0.06, 0.03
@@ -104,8 +102,6 @@ class Arcs:
             return
         usual = yield from self._arcs(start, place, floor, airtime, around, heights)
         if usual is None or airtime is not None:
-            return
-        if usual.course is not None and usual.course.outside > ASTRAY * self.physique.size:
             return
         faster = float(np.linalg.norm(usual.velocity * FLAT)) / max(float(np.linalg.norm(start.velocity * FLAT)), 1e-6)
         for share in LOWER:
