@@ -76,7 +76,7 @@ class Script:
             known = self._thinks(controller, state, intent, around, known.pace or pace_of(move), dt)
         if self.now.turns:
             known, thought = known.after(), known.thought is not None
-            if thought and known.stops and math.dist(move.jump.place[::2], state.ground[:2]) > ANEW:
+            if thought and known.stops and move.jump.place is not None and math.dist(move.jump.place[::2], state.ground[:2]) > ANEW:
                 known = Known(WALKS[0])
             if known.waits:
                 return replace(self, now=replace(self.now, aside=known)), waiting(state, intent)
