@@ -128,7 +128,7 @@ class Arcs:
                     deep = yield tried
                 if not slower[0] or tried.why:  # who can't go it in all haste is not asked whether he can otherwise
                     if start.runs and flight is not None and higher == 1.0 and place[1] >= floor:  # a runner's haste tells how long he flies
-                        quick = tried._replace(how=how(2))
+                        quick = Arc(tried.path, tried.why, how(2))
                     else:
                         yield PATH
                         quick = arc(2)
