@@ -7,7 +7,7 @@ over without a jump is each controller's own `enter`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -240,6 +240,17 @@ class Supervisor(Controller):
         known(state, intent)
         found = [why for why in (part.pondered(self.active(state)[1], intent, ask) for part in self.parts.values()) if why is not None]
         return None if not found else "" if "" in found else found[0]
+
+    def looks(self, state: CharacterState, intent: Intent) -> Generator[int, Any, Any]:
+        """The plan of the leap that intent.leap says, by one of them, or why there is none, in pieces: it yields what each costs before that is worked out. None where none ever leaps."""
+        known(state, intent)
+        told = None
+        for part in self.parts.values():
+            found = yield from part.looks(self.active(state)[1], intent)
+            if found is not None and not isinstance(found, str):
+                return found
+            told = told or found
+        return told
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that intent.leap says, with how one of them could make it; None where none could."""

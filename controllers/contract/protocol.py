@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from types import MappingProxyType
 from typing import Any, Protocol
 
@@ -137,6 +137,11 @@ class Controller(Protocol):
     def pondered(self, state: CharacterState, intent: Intent, ask: Callable[[], None]) -> str | None:
         """What `refusal` gives. ask: is called once more for each part of it that takes as long as most answers do."""
         return self.refusal(state, intent)
+
+    def looks(self, state: CharacterState, intent: Intent) -> Generator[int, Any, Any]:
+        """The plan of the leap that intent.leap says from a state, or why there is none, in pieces: it yields what each costs before that is worked out. None of one that never leaps."""
+        return None
+        yield
 
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not."""

@@ -247,6 +247,20 @@ class Jump(Reach, Controller):
         start, floor = self.placed(state, leap, around)
         return start.along and self._carried(state, start, floor, leap).keeps
 
+    def looks(self, state: CharacterState, intent: Intent) -> Pieces[Plan | str]:
+        """The plan of the leap that intent.leap says from a state, or why there is none, in pieces."""
+        leap = intent.leap
+        if leap is None:
+            return "nobody asked for a jump"
+        if self._sets_feet(state) and not along_of(state, leap):
+            return SETS_FEET
+        try:
+            start, place, floor, _ = self._meant(state, leap, intent.around)
+        except Refused as reason:
+            return str(reason)
+        found, why = yield from self.seen(start, place, floor, leap.airtime, intent.around, False)
+        return why if found is None else found.made
+
     def found(self, state: CharacterState, intent: Intent) -> Leap | None:
         """The leap that can be made from a state, with how; None where it can't."""
         leap = intent.leap

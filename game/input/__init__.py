@@ -5,7 +5,8 @@ Devices give a `Wish`, seen from the camera, as a table of `Bindings` says. The 
 intents at once.
 """
 
-from .aim import BACK, FARTHEST, MOVING, NEAR, PATIENCE, Aim
+from .aim import FARTHEST, Aim
+from .aimed import BACK, MOVING, NEAR, PATIENCE
 from .bindings import DEFAULT, HOLDING, JOINING, REWOUND, Binding, Bindings, Mouse, Sticks
 from .devices import (PLAYERS, Keyboard, dead_zone, drivers, mode_of, mouse_wish, pad_held, pad_pressed, pad_wish,
                       player_of, wheel_wish, wishes)

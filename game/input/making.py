@@ -12,7 +12,7 @@ from gambol.controllers.contract import CharacterState, Intent, Leap, Status, bu
 from gambol.controllers.jump import MOMENTARY, Jumping, walks_to
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
-from .aside import ASKS, NEAREST, Known, askew, bent, beside, lands, room
+from .aside import ANEW, FAST, NEAREST, UNDER_WAY, Known, bent, beside, lands, room
 from .moves import Jump, Move
 from .pilot import STEERING
 from .run_up import RunUp
@@ -35,8 +35,6 @@ PASSED = 0.12
 """A place farther behind than this [m] a run-up has gone past."""
 HOPS_UP = 0.4
 """What is higher over the ground than this [m] is hopped against, not onto."""
-UNDER_WAY = 0.7
-"""Who runs up to a jump faster than this [m/s] aims at it; who is slower would crouch for it."""
 LAST, BENDS = 0.3, 1.25
 """So near to its end along a path [m], and where that is no longer by more than this factor than straight, somebody goes there to come to rest."""
 STANDS, STILL = 5.0, 0.1
@@ -47,6 +45,13 @@ AHEAD = 0.85, 0.5
 """A runner asks for its jump this near to the landing: at no speed [m], and for each m/s [s]."""
 STRIDE = 0.8
 """And a walker so much farther off [m]: he chooses among his next footfalls."""
+
+LATE = 0.45
+"""Who runs, and would be there within this [s], leaps there no more: no foot brakes so much."""
+BRAKES = 2.5
+"""Who would come to rest, braking so hard [m/s²], no farther from the place than from where he can leap to it does; who would be farther turns back at a walk."""
+BEYOND, EACH, HIGHEST, EVEN = 2.0, 0.2, 2.0, 0.06
+"""Who turns back to a place finds even floor as far as the first before and behind [m], looked at so often [m]: nothing up to the third is higher than the fourth, or lower [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,18 +153,22 @@ class Making:
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
         runs = move.runs and not self.aside.stops
         if runs:
-            if not self.turns and (way @ np.array(in_world(state.ground, intent.velocity))) < -PASSED * _pace(intent):  # no run-up leads back
+            speed, behind = float(np.hypot(state.velocity[0], state.velocity[2])), bool(way @ np.array(in_world(state.ground, intent.velocity)) < -PASSED * _pace(intent))
+            if not self.turns and self._back(move, jump, state, far, speed, behind):
+                if abs(speed**2 / (2.0 * BRAKES) + (far if behind else -far)) < ANEW:
+                    return replace(self, aside=Known(stops=True, steps=0), turns=True), bent(state, 0.0, way)
+                self = replace(self, turns=True)
+            if not self.turns and behind:  # no run-up leads back
                 return replace(self, passed=self.asked > 0 and _straight(move)), intent
-            speed = float(np.hypot(state.velocity[0], state.velocity[2]))
             usual = AHEAD[0] + AHEAD[1] * speed * jump.slow + STRIDE * walks_to(state, leap)
             ready = self.run_up.halt is not None or far <= (usual if jump.within is None else jump.within)
             leads = self._leads(move, jump, far) and (self.turns or beside(state, way)) and state.active == "locomotion" and self.run_up.halt is None
             if leads and (ready or far <= usual + room(state, way, pace_of(move))):
-                if far < NEAREST and self.aside.steps < 0:
-                    return replace(self, aside=Known(stops=True), turns=True), bent(state, 0.0, way)
+                if far < NEAREST and self.aside.lapsed:
+                    return replace(self, aside=Known(stops=True, steps=0), turns=True), bent(state, 0.0, way)
                 self, intent = replace(self, turns=True), bent(state, self.aside.pace or pace_of(move), way)
                 leap = replace(leap, heading=lands(state, way)) if beside(state, way) else leap
-            ready = ready and (not leads or (self.aside.once or abs(askew(state, way)) < ASKS) and far > NEAREST)
+            ready = ready and (not leads or far > NEAREST)
         elif far > NEAR and jump.heading is None:
             heading = math.atan2(*way)
             intent = steer(state.ground, np.zeros(2), heading, state.velocity[1], STEERING)
@@ -173,6 +182,18 @@ class Making:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
         return replace(self, asked=self.asked + (runs or now is None), hops=hops), replace(intent, leap=leap)
+
+    def _back(self, move: Move, jump: Jump, state: CharacterState, far: float, speed: float, behind: bool) -> bool:
+        """Whether somebody who goes so fast [m/s] on a run-up turns back to a place that lies behind, so far away [m], or that no foot sends him to any more who asked for it: where all is even."""
+        late = self.asked > 0 and (behind or speed > FAST and far < LATE * speed)
+        if not (late or behind and self.steps == 0 and far > NEAREST) or state.active != "locomotion" or self.run_up.halt is not None or not _straight(move) or not self._leads(move, jump, far):
+            return False
+        assert jump.place is not None  # or nothing would lead there
+        floor, here, there = float(state.floor), np.asarray(state.ground[:2], float), np.array([jump.place[0], jump.place[2]])
+        if move.points and math.dist(move.points[-1], there) > NEAREST:
+            return False
+        ways = [here + far * (there - here) / max(math.dist(here, there), 1e-9) for far in np.arange(-BEYOND, far + BEYOND, EACH)]
+        return all(abs(floor_at(float(x), float(z), jump.around, floor + HIGHEST) - floor) < EVEN for x, z in ways) and abs(float(jump.place[1]) - floor) < EVEN
 
     def _leads(self, move: Move, jump: Jump, far: float) -> bool:
         """Whether somebody on a run-up has only the way left to where his jump leads, so far away [m]: he may turn to it, unless he was told how he lands."""

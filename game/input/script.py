@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Strike, but
+from gambol.controllers.jump import Spread
 from gambol.controllers.navigation import STEP, follow
 from gambol.controllers.supervisor import both
 
-from .aside import Known, ahead, found, goes_off
+from .aside import ANEW, EACH, WALKS, Ahead, Known, ahead, askew, paces, waiting
 from .making import Making, pace_of, way_of
 from .moves import Move
 from .run_up import Asks
@@ -71,21 +72,31 @@ class Script:
         if move is None or move.jump is None or self.now.jumped or state.active == "jump" or not move.runs:
             return self, intent
         known = self.now.aside
-        if self.now.turns and not known.stops and known.steps < 0:
-            return self._turned(controller, state, intent, around, dt)
+        if self.now.turns and not known.stops and known.lapsed:
+            known = self._thinks(controller, state, intent, around, known.pace or pace_of(move), dt)
+        if self.now.turns:
+            known, thought = known.after(), known.thought is not None
+            if thought and known.stops and move.jump.place is not None and math.dist(move.jump.place[::2], state.ground[:2]) > ANEW:
+                known = Known(WALKS[0])
+            if known.waits:
+                return replace(self, now=replace(self.now, aside=known)), waiting(state, intent)
         run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt, move.jump.place)
-        return replace(self, now=replace(self.now, run_up=run_up, aside=known._replace(steps=known.steps - 1) if self.now.turns else known)), run_up.heeded(state, intent)
+        return replace(self, now=replace(self.now, run_up=run_up, aside=known)), run_up.heeded(state, intent)
 
-    def _turned(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
-        """The same of one who turns to a place aside, once he knows how to leap to it."""
+    def _thinks(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], pace: float, dt: float) -> Known:
+        """What is known of who begins to turn to a place aside, and to think of how to leap to it, and goes so fast [m/s]."""
         move = self.moves[self.index]
         assert move.jump is not None and move.jump.place is not None  # or he would not turn
-        far = math.dist(move.jump.place[::2], state.ground[:2])
+        place = np.asarray(move.jump.place, float)[[0, 2]]
+        way = place - state.ground[:2]
+        far = float(np.hypot(*way))
+        may = paces(pace, askew(state, way), far)
+        found = Ahead[Script](controller, around, place, dt).found(self, state, intent, may, ahead(far, may[0]))
+        return Known(may[0], thought=Spread(found, EACH))
 
-        def tries(known: Known) -> tuple[int, float]:
-            script = replace(self, now=replace(self.now, aside=known))
-            return goes_off(controller, state, script._onward(intent, dt), around, dt, ahead(far, known.pace))
-        return replace(self, now=replace(self.now, aside=found(tries, pace_of(move), dt))), intent
+    def paced(self, pace: float) -> Script:
+        """The same of one who goes so fast [m/s] to a place aside."""
+        return replace(self, now=replace(self.now, aside=Known(pace, 0)))
 
     def _onward(self, intent: Intent, dt: float) -> Asks:
         """What it asks from here on, first an intent."""

@@ -1,7 +1,7 @@
-"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls; hands that hold a leap
-as they run at gaps, boxes and hurdles.
+"""Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls; a script's, of
+who walks or runs and is told to leap to a place aside; hands that hold a leap as they run at gaps, boxes and hurdles.
 
-    python scripts/measure/ticks.py [--clicks 40]
+    python scripts/measure/ticks.py [--clicks 40] [--only scripts]
 
 Ticks come sixty times a second, as in a game. A tick's time is that of the processor in the thread that makes it; what is thought of beside, in
 another thread, is told apart. What a first run compiles or loads is done before.
@@ -23,12 +23,13 @@ from _struck_rooms import room
 from run_ups import RUNNING, running_stage
 
 from gambol.controllers.contract import Goal, Intent, Strike
+from gambol.controllers.navigation import in_world
 from gambol.controllers.person import person
-from gambol.game.input import Wish
+from gambol.game.input import Jump, Move, Script, Wish
 from gambol.game.scenario import film, load
 from gambol.game.scene import Box
 from gambol.game.session import Timeline, begin, opening
-from gambol.game.world import RATE, Character, World
+from gambol.game.world import DT, RATE, Character, World, stopped
 
 AMONG = tuple(Box((float(x), 0.6, float(z)), (0.5, 1.2, 0.5), 0.3 * x) for x in (-2.4, -0.8, 0.8, 2.4) for z in (2.0, 4.0, 6.0))
 
@@ -40,7 +41,7 @@ def told(name: str, ticks: Iterator[None]) -> None:
     for _ in ticks:
         own.append(1e3 * (time.thread_time() - begun))
         due = max(due + 1.0 / RATE, time.monotonic())
-        time.sleep(due - time.monotonic() if due > time.monotonic() else 0.0)
+        time.sleep(max(due - time.monotonic(), 0.0))
         begun = time.thread_time()
     whole = 1e3 * (time.process_time() - whole)
     print(f"{name}: {len(own)} ticks, median {np.median(own):.2f} ms, the longest three {', '.join(f'{one:.1f}' for one in np.sort(own)[:-4:-1])} ms, "
@@ -89,6 +90,27 @@ def strikes(count: int, seed: int) -> Iterator[None]:
             yield
 
 
+def aside(count: int, seed: int) -> Iterator[None]:
+    """The steps of a script's walkers and runners, from the moment in which they are told to leap to a place beside their way."""
+    rng, who = np.random.default_rng(seed), person()
+    for _ in range(count):
+        speed, angle, far = rng.uniform(0.7, 3.0), rng.uniform(-1.6, 1.6), rng.uniform(0.8, 3.0)
+        world = World((Character("A", who, who.start()),))
+        for _ in range(3 * RATE + rng.integers(RATE)):
+            world = world.step([Intent(np.array([speed, 0.0, 0.0]))])
+            yield
+        ground = world.characters[0].state.ground
+        way = np.arctan2(*in_world(ground, world.characters[0].state.velocity)) + angle
+        place = float(ground[0] + far * np.sin(way)), 0.0, float(ground[1] + far * np.cos(way))
+        script = Script((Move(6.0, (speed, 0.0, 0.0), jump=Jump(place)), Move(6.0, (speed, 0.0, 0.0))))
+        for _ in range(5 * RATE):
+            state = world.characters[0].state
+            script, intent = script.step(state, DT)
+            script, intent = script.held(who, state, intent, (), DT)
+            world = world.step([intent if script.leaps else stopped(state, intent, ())])
+            yield
+
+
 def held(kind: str, count: int, seed: int) -> Iterator[None]:
     """The ticks of a game in which hands run at a gap, a box or a hurdle and hold a leap from so far ahead until it goes off."""
     who = person()
@@ -110,18 +132,18 @@ def main() -> None:
     """Print all figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clicks", type=int, default=20)
+    parser.add_argument("--only", default="", help="lines that begin so")
     asked = parser.parse_args()
-    for _ in chain(clicks(3, 9), strikes(4, 9), *(held(kind, 2, 9) for kind in RUNNING)):  # compiled, loaded
+    for _ in chain(clicks(3, 9), strikes(4, 9), aside(2, 9), *(held(kind, 2, 9) for kind in RUNNING)):  # compiled, loaded
         pass
     time.sleep(4.0)  # the last of them is still thought of
     gc.collect()
     gc.freeze()  # as the game does: to look for garbage among all that is loaded takes 60 to 80 ms
-    told("go_across", scenario("go_across"))
-    told("clicks on the course", clicks(asked.clicks, 0))
-    told("goals among twelve boxes", imported(asked.clicks, 0))
-    told("struck on stairs", strikes(asked.clicks, 0))
-    for kind in RUNNING:
-        told(f"a leap held at a run, {kind}", held(kind, max(asked.clicks // 2, 1), 0))
+    lines = {"go_across": scenario("go_across"), "clicks on the course": clicks(asked.clicks, 0), "goals among twelve boxes": imported(asked.clicks, 0), "struck on stairs": strikes(asked.clicks, 0),
+             "scripts' leaps aside": aside(asked.clicks, 0), **{f"a leap held at a run, {kind}": held(kind, max(asked.clicks // 2, 1), 0) for kind in RUNNING}}
+    for name, ticks in lines.items():
+        if name.startswith(asked.only):
+            told(name, ticks)
 
 
 if __name__ == "__main__":

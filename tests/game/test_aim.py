@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from gambol.controllers.contract import Duty
 from gambol.controllers.navigation import drift
-from gambol.game.input.aim import AIRTIME, LONGEST, PATIENCE, PUSH, SWINGS, Aim
+from gambol.game.input.aim import PUSH, SWINGS, Aim
+from gambol.game.input.aimed import AIRTIME, LONGEST, PATIENCE
 from gambol.game.input.wish import Wish
 from gambol.game.scene.scene import Box
 from gambol.game.world.world import DT

@@ -15,7 +15,7 @@ from gambol.controllers.navigation import gap
 from gambol.game.app.views import previews, scenes
 from gambol.game.explain.jump_preview import previewed
 from gambol.game.explain.jump_sketches import CAN, CANNOT, aimed
-from gambol.game.input.aim import SLACK
+from gambol.game.input.aimed import SLACK
 from gambol.game.input.making import jumping
 from gambol.game.input.wish import Wish
 from gambol.game.input.within_reach import BEYOND

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from gambol.controllers.jump import Jumping
+from gambol.controllers.jump.reach import arcs, reach
 from gambol.controllers.jump.body import soles
 from gambol.controllers.locomotion import Locomotion, Settings
 from gambol.controllers.navigation import in_world
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, Script, Wish
-from gambol.game.input.aside import beside, lands
+from gambol.game.input.aside import EACH, beside, lands
 from gambol.game.session import Timeline, begin, refused
 from gambol.game.world import DT, RATE, Character, World
 
@@ -58,16 +59,18 @@ def told(someone, state, aside, far, path=False):
 @pytest.mark.parametrize("aside", [40.0, -40.0, -60.0])
 def test_who_has_time_for_a_step_turns_to_the_place_and_leaps_on_along_the_line_to_it(someone, under_way, aside, path):
     """It was refused, as too near for his run, or he sat down on the foot that had struck and stopped where he came down, facing on."""
+    strides = []
     for state in under_way:
         states, made, place, script = told(someone, state, aside, 2.2, path)
         assert made is not None, script.refused
         assert len(states) * DT < 2.0
         one, way = made.path.lands, place - states[-1].ground[:2]
-        assert one is not None, "he walks on from there"
-        landed = soles(made.feet[one:one + 1], someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0)
+        strides.append(one is not None)
+        landed = soles(made.feet if one is None else made.feet[one:one + 1], someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0)
         assert np.linalg.norm(landed - place) < 0.05
         assert abs(math.remainder(made.path.heading + made.path.turn - math.atan2(*way), math.tau)) < 0.3
         assert abs(math.remainder(float(states[-1].ground[2]) - math.atan2(*way), math.tau)) < 0.75, "the steps before it turned him most of the way"
+    assert any(strides), "he walks on from there"
 
 
 @pytest.mark.few(1)
@@ -120,3 +123,53 @@ def test_hands_that_let_go_of_the_stick_as_he_turns_leap_at_once_on_the_way_that
     _, way, since = tapped(someone, 90.0, 0.3)
     _, _, turned = tapped(someone, 90.0)
     assert since < turned and 0.0 < way < math.radians(80.0)
+
+
+def at_a_run(someone, speed):
+    """Somebody who goes straight on so fast [m/s]."""
+    state = someone.start()
+    for _ in range(200):
+        state, _ = someone.step(state, Script((Move(9.0, (speed, 0.0, 0.0)),)).step(state, DT)[1], DT)
+    return state
+
+
+@pytest.mark.parametrize("speed, aside, far", [(1.3, -60.0, 2.0), (2.8, 60.0, 2.5)])
+def test_no_step_of_who_thinks_of_a_leap_aside_has_more_to_work_out_than_a_few_paths_or_a_plan_and_it_is_the_same_again(someone, monkeypatch, speed, aside, far):
+    """It was found out at once, in a quarter to one and a half seconds: a live theatre stood still. Nor does it matter what is known already of a leap that was thought of before."""
+    paths, plans, steps = [], [], []
+    path, plan, step, held = arcs.grounded, reach.plan, type(someone.parts["locomotion"]).step, Script.held
+    most = []
+    monkeypatch.setattr(arcs, "grounded", lambda *given: paths.append(1) or path(*given))
+    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    monkeypatch.setattr(type(someone.parts["locomotion"]), "step", lambda *given: steps.append(1) or step(*given))
+
+    def counted(*given):
+        for some in (paths, plans, steps):
+            some.clear()
+        after = held(*given)
+        most.append((len(paths), len(plans), len(steps)))
+        return after
+    monkeypatch.setattr(Script, "held", counted)
+    state = at_a_run(someone, speed)
+    states, made, _, script = told(someone, state, aside, far)
+    assert made is not None, script.refused
+    assert max(paths for paths, _, _ in most) <= 3 and max(plans for _, plans, _ in most) <= 1 and max(steps for _, _, steps in most) <= EACH + 1
+    again, _, _, _ = told(someone, state, aside, far)
+    assert len(again) == len(states) and all(np.array_equal(one.pose.root, other.pose.root) for one, other in zip(states, again))
+
+
+def test_who_walks_slowly_to_a_place_aside_goes_faster_and_leaps_on_one_foot(someone):
+    """At 0.8 m/s nobody pushes off one foot: he sat down over both, and stood."""
+    state = at_a_run(someone, 0.8)
+    for aside in (-40.0, 60.0):
+        _, made, _, script = told(someone, state, aside, 2.0)
+        assert made is not None and made.path.lands is not None, script.refused
+
+
+@pytest.mark.parametrize("speed, aside, far", [(3.0, 0.0, 1.3), (1.3, 180.0, 1.3), (2.5, 150.0, 1.3)])
+def test_who_is_told_of_a_place_that_he_runs_past_or_that_lies_behind_turns_back_and_leaps_there(someone, speed, aside, far):
+    """He was refused, and ran on."""
+    states, made, place, script = told(someone, at_a_run(someone, speed), aside, far)
+    assert made is not None, script.refused
+    feet = made.feet if made.path.lands is None else made.feet[made.path.lands:made.path.lands + 1]
+    assert np.linalg.norm(soles(feet, someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0) - place) < 0.05

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Jump, Jumping, Refused
-from gambol.controllers.jump.reach import SHARE, Seeking, reach, whole
+from gambol.controllers.jump.reach import SHARE, Seeking, Spread, reach, whole
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.supervisor import Supervisor
 from gambol.game.scene import Box
@@ -38,6 +38,26 @@ def test_what_is_known_depends_on_the_steps_alone(costs, asked):
         before = sum(done)
         words = [known for known in steps[:n] if isinstance(known, str)]
         assert steps[n - 1] == tuple(costs) or words[-1] in ("", *costs)
+
+
+def told(costs, known):
+    """Questions that cost so much each, in pieces, or at once where that is known already; in which step each was answered."""
+    answered = []
+    for cost in costs:
+        for piece in [*([sum(cost)] if known else cost), 0]:
+            number = yield piece
+        answered.append(number)
+        yield 1
+    return answered
+
+
+@given(st.lists(st.lists(st.integers(1, 9), min_size=1, max_size=4), min_size=1, max_size=6), st.integers(1, 12))
+def test_what_is_known_already_is_of_use_after_as_many_steps_as_what_is_found_out(costs, each):
+    one, other = Spread(told(costs, False), each), Spread(told(costs, True), each)
+    steps = sum(map(sum, costs)) + len(costs) + 2
+    assert one.after(steps) == other.after(steps) and isinstance(one.after(steps), list)
+    assert [isinstance(one.after(n), list) for n in range(1, steps)] == [isinstance(other.after(n), list) for n in range(1, steps)]
+    assert one.after(steps)[-1] <= (sum(map(sum, costs)) + len(costs)) / each
 
 
 @pytest.fixture(scope="module")

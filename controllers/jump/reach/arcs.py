@@ -127,8 +127,11 @@ class Arcs:
                     tried, slower = arc(0), (1,)
                     deep = yield tried
                 if not slower[0] or tried.why:  # who can't go it in all haste is not asked whether he can otherwise
-                    yield PATH
-                    quick = arc(2)
+                    if start.runs and flight is not None and higher == 1.0 and place[1] >= floor:  # a runner's haste tells how long he flies
+                        quick = Arc(tried.path, tried.why, how(2))
+                    else:
+                        yield PATH
+                        quick = arc(2)
                     for haste in slower if not quick.why else ():
                         yield PATH
                         tried = arc(haste)

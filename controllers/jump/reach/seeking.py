@@ -90,6 +90,28 @@ class Seeking(Generic[T]):
             spent += piece
 
 
+class Spread(Seeking[T]):
+    """The same of pieces that are sent after how many steps each of them is worked out, so many costs in a step. What costs more than a step has time for is paid off in the next ones: what is known
+    already, and costs at once what it cost, is of use after as many steps."""
+
+    def __init__(self, pieces: Pieces[T], share: int):
+        super().__init__(pieces)
+        self._each, self._spent, self._begun = share, 0, False
+
+    def _share(self) -> T | str:
+        number = len(self._known)
+        try:
+            while self._spent < self._each * (number + 1):
+                if self._begun:
+                    self._spent += self._held
+                piece = self._pieces.send(number if self._begun else None)
+                self._held, self._begun = piece if isinstance(piece, int) else 0, True
+        except StopIteration as end:
+            self._ended = True
+            return end.value
+        return ""
+
+
 def _sought(known: tuple[Any, ...]) -> Seeking[Any]:
     """Seeking that has come to its end, of what was known after each step."""
     made: Seeking[Any] = Seeking(iter(()))  # type: ignore[arg-type]
