@@ -42,6 +42,8 @@ DOWN, BENDS = 0.12, 0.012
 """Whoever stands on a slope stands lower, by the first at most [m], for both heels to be down: on legs that are the second shorter than straight."""
 ANCHOR_HALFLIFE = 0.03
 """A foot's weight rolls from heel to ball with this half-life [s]."""
+TOE_HALFLIFE = 0.045
+"""Toes that leave the floor bent straighten with this half-life [s]: free at once, they snapped by up to 40° in a frame."""
 OVER = 0.3
 """A foot swings higher by this share of how much higher or deeper the other stands."""
 CLOSE = 0.06
@@ -108,11 +110,10 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
             positions[j, 1] -= m.pelvis - lowered
         if not even:
             lower_heel(m, body, foot, hip, length[foot], m.pelvis - lowered, positions, orientations, ankle[foot], work)
-        nearer_kernel(positions[hip], ankle[foot], REACH * leg_length(body, hip), 0.0)
-        nearer_kernel(positions[hip], ankle[foot], length[foot], firm[foot])
+        nearer_kernel(positions[hip], ankle[foot], length[foot], firm[foot], REACH * leg_length(body, hip))
         leg_kernel(positions, orientations, hip, ankle[foot], work)
         toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)
-        toe_kernel(body, hip + 2, toes + lift[foot], positions, orientations, local, work)
+        _bend_toes(m, body, foot, hip + 2, toes + lift[foot], positions, orientations, local, dt, work)
         relative_kernel(orientations[0], orientations[hip], local[hip])
         relative_kernel(orientations[hip], orientations[hip + 1], local[hip + 1])
         relative_kernel(orientations[hip + 1], orientations[hip + 2], local[hip + 2])
@@ -161,6 +162,15 @@ def _turn_foot(m, body, foot, a, height, lift, orientations, ankle, dt, work):
         under_heel += orientations[a, 1, k] * body.heel[k]
         under_ball += orientations[a, 1, k] * body.offsets[a + 1, k]
     ankle[1] += max(0.0, height - min(under_heel - lie_kernel(m, heel), under_ball - lie_kernel(m, ball)))
+
+
+@kernel
+def _bend_toes(m, body, foot, a, height, positions, orientations, local, dt, work):
+    """Bend a foot's toes (of joint a) up as far as the floor has them; free of it they straighten smoothly. height: of the floor for their end."""
+    kept, rate = spring_kernel(m.toe[foot], m.toe_rate[foot], 0.0, TOE_HALFLIFE, dt)
+    bent = toe_kernel(body, a, height, max(kept, 0.0), positions, orientations, local, work)
+    m.toe_rate[foot] = rate if bent <= max(kept, 0.0) else min((bent - m.toe[foot]) / dt, 0.0)
+    m.toe[foot] = bent
 
 
 @kernel

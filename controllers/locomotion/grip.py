@@ -17,6 +17,7 @@ from .memory import WALK
 from .root_motion import sooner
 from .short_leg import STRAINED
 from .swing import swing_progress
+from .treads import FOOT
 from .uneven_ground import lie_kernel
 
 TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
@@ -24,7 +25,7 @@ TAKING, LEAVING = (0.05, 0.35), ((0.2, 0.9), (0.5, 0.95))
 comes to stand, so that it does not creep in, and early as it leaves, walking and running, so that the leg is not held
 back …"""
 GATE = 0.035
-"""… and takes hold only when it is lower than this above where it rests [m]."""
+"""… and takes hold only when it is lower than this above where it rests [m], a heel as it has risen for its leg: it was held 12 cm up as a turn began, and its knee thrown."""
 GRIP_RATE = 30.0, 25.0
 """How fast a grip may change [1/s]: walking, where both feet are as high; and on stairs, where a foot that stops sooner ends in a riser, and running, since who runs pushes only while a foot
 grips."""
@@ -38,8 +39,8 @@ FLAT_HALFLIFE = 0.06
 """A walker's ball comes down after its heel with this half-life [s], however high a pose that fades has it: feet stood on their heels for a fifth of a second."""
 LEAVES, LENT = -1.0, 0.3
 """A ball whose label falls faster than this [1/s], its heel free by more than the second, does not hold on again: its leg would be stretched, and whip."""
-LATE = 2.0
-"""Nor does a heel so long after its swing began, over the time of that, its ball firm: it has begun to leave. It was pulled down within a frame as a turn began."""
+LATE, RISEN = 2.0, 0.05
+"""Nor does a heel so long after its swing began, over the time of that, its ball firm, or risen for its leg by more than the second [rad]: it has begun to leave. It was pulled down within a frame as a turn began."""
 
 
 @kernel
@@ -64,14 +65,15 @@ def take_hold(m, k, height, step):
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
+    risen = FOOT * math.sin(max(m.rise[k // 2], 0.0)) if k % 2 == 0 else 0.0
     if wanted > m.grip[k] and not m.settled and (
-            m.points[k, 1] + m.raised[k] > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
+            m.points[k, 1] + m.raised[k] + risen > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
         wanted = m.grip[k]
     if wanted > m.grip[k] and m.lent[k // 2] > LENT:
         if k % 2:
             leaves = m.row_rate[LABELS_AT + k] < LEAVES
         else:
-            leaves = not (m.settled or m.waits) and m.grip[k + 1] >= 1.0 and swing_progress(m, k // 2) > LATE
+            leaves = not (m.settled or m.waits) and (m.grip[k + 1] >= 1.0 or m.rise[k // 2] > RISEN) and swing_progress(m, k // 2) > LATE
         if leaves:
             wanted = m.grip[k]
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)

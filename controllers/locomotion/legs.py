@@ -127,8 +127,8 @@ def soft_reach(distance, reach, softness):
 
 
 @kernel
-def toe_kernel(body, a, height, positions, orientations, local, work):
-    """Bend the toe joint a + 1 up about the foot's lateral axis until the toe's end is not below the floor.
+def toe_kernel(body, a, height, bent, positions, orientations, local, work):
+    """Bend the toe joint a + 1 up about the foot's lateral axis by `bent` [rad], and on until the toe's end is not below the floor; by how much in all.
 
     Twice, since on a rolled foot the first turn falls short.
     """
@@ -138,14 +138,19 @@ def toe_kernel(body, a, height, positions, orientations, local, work):
     axis, turned = work[0, 0], work[1]
     for i in range(3):
         axis[i] = orientations[a, i, 0]
-    for _ in range(2):
+    angle = bent
+    for k in range(3):
+        if angle != 0.0:
+            tilt_kernel(orientations[t], axis, -angle, turned)
+            for i in range(3):
+                for j in range(3):
+                    orientations[t, i, j] = turned[i, j]
+        if k == 2:
+            break
         now = (orientations[t, 1, 0] * body.toe_end[0] + orientations[t, 1, 1] * body.toe_end[1]
                + orientations[t, 1, 2] * body.toe_end[2]) / length
         least = (height - positions[t, 1]) / length
-        if now < least:
-            angle = math.asin(min(max(least, -1.0), 1.0)) - math.asin(min(max(now, -1.0), 1.0))
-            tilt_kernel(orientations[t], axis, -angle, turned)
-            for i in range(3):
-                for k in range(3):
-                    orientations[t, i, k] = turned[i, k]
+        angle = math.asin(min(max(least, -1.0), 1.0)) - math.asin(min(max(now, -1.0), 1.0)) if now < least else 0.0
+        bent += angle
     relative_kernel(orientations[a], orientations[t], local[t])
+    return bent

@@ -162,6 +162,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("lift", "f4", 2), ("lift_rate", "f4", 2),  # how high each foot is held over the floor
         ("rise", "f4", 2), ("rise_rate", "f4", 2),  # how far each heel is lifted to give its leg length [rad]
         ("bears", "f4", 2), ("bears_rate", "f4", 2),  # how far each ball bears, or has just borne
+        ("toe", "f4", 2), ("toe_rate", "f4", 2),  # how far the floor has bent each foot's toes, or had just now [rad]
         ("taut", "f4", 2),  # how firmly each leg is held straight, or was until just now
         ("lent", "f4", 2), ("lent_rate", "f4", 2),  # how free each heel is to rise, for its knee to bend as the blend's
         ("pelvis", "f4"), ("pelvis_rate", "f4"),  # how far short legs have lowered the pelvis

@@ -17,6 +17,8 @@ HEEL_RISE = 0.9
 """The most that a heel may rise about the ball to give a leg length [rad] …"""
 NEAREST = 0.95
 """… and how far, as a cosine from 1 on, to where the ankle is nearest to its hip."""
+STEEPEST, STEEP_SOFTLY = 0.9, 0.1
+"""Of that, for a knee to bend as recorded ones do, only what leaves the foot no steeper than the first [rad], within about the second: recorded walkers and runners leave the floor at 1.1 to 1.3, and feet stood on their toes' tips."""
 RISE_RATE = 8.0
 """A heel rises for its leg's sake no faster than this [rad/s] …"""
 RISE_HALFLIFE = 0.06
@@ -62,6 +64,7 @@ def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, d
     length = soft_reach(asked - free * over, reach - free * BENT, SOFTNESS + EARLIER * (1.0 - max(grip, m.grip[2 * foot])) * over)
     rise = heel_rise_kernel(positions[hip], ball, ankle, axis, length)
     firm = grip * grip * (3.0 - 2.0 * grip)
+    rise += (1.0 - firm) * (softly_most(rise, max(STEEPEST - _steepness(body, orientations[a], a), 0.0)) - rise)
     later, rate = spring_kernel(m.rise[foot], m.rise_rate[foot], rise * bears, RISE_HALFLIFE, dt)
     later = max(later + firm * (min(rise * bears, m.rise[foot] + RISE_RATE * dt) - later), 0.0)
     m.rise[foot], m.rise_rate[foot] = later, rate + firm * ((later - m.rise[foot]) / dt - rate)
@@ -78,9 +81,26 @@ def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, d
         m.torn[foot] = 1
     for i in range(3):
         turned[0, i] = ankle[i]
-    nearer_kernel(positions[hip], turned[0], length, firm)  # what does not stand asks less of the pelvis
+    nearer_kernel(positions[hip], turned[0], length, firm, math.inf)  # what does not stand asks less of the pelvis
     m.taut[foot] = taut = max(grip, m.taut[foot] - SLACKENS * dt)
     return lacks_kernel(positions[hip], turned[0], reach), length, taut * taut * (3.0 - 2.0 * taut)
+
+
+@kernel
+def softly_most(x, most):
+    """x [rad], but no more than `most`, to which it comes smoothly."""
+    return max(x - STEEP_SOFTLY * math.log1p(math.exp((x - most) / STEEP_SOFTLY)), 0.0)
+
+
+@kernel
+def _steepness(body, orientation, a):
+    """How steeply a foot (of joint a) stands on its ball [rad]: 0 as it lies flat."""
+    down = size = 0.0
+    for k in range(3):
+        along = body.heel[k] - body.offsets[a + 1, k]
+        down += orientation[1, k] * along
+        size += along * along
+    return math.asin(min(max(down / math.sqrt(size), -1.0), 1.0))
 
 
 @kernel
@@ -113,11 +133,14 @@ def lower_heel(m, body, foot, hip, length, sinks, positions, orientations, ankle
 
 
 @kernel
-def nearer_kernel(hip, ankle, length, firm):
-    """An ankle that is farther from its hip than its leg is long comes nearer, as far as its foot does not stand firmly."""
+def nearer_kernel(hip, ankle, length, firm, most):
+    """An ankle that is farther from its hip than its leg is long comes nearer, as far as its foot does not stand firmly, and to `most` [m] in any case."""
     distance = distance_kernel(hip, ankle)
-    if distance > length:
-        share = (length + firm * (distance - length)) / distance
+    far = min(distance, most)
+    if far > length:
+        far = length + firm * (far - length)
+    if far < distance:
+        share = far / distance
         for i in range(3):
             ankle[i] = hip[i] + (ankle[i] - hip[i]) * share
 

@@ -46,6 +46,9 @@ GOES, STANDS = 0.25, 0.05
 """Who will be faster than the first [m/s] turns into a walk, who will be no faster than the second on the spot."""
 OTHERWISE = 0.6
 """Who is told to face another way than that by more than this [rad] leaves a turn."""
+AFRESH = 0.9, 3.7
+"""… or, as no foot has left yet, turns as far as he is told now, if that is more than the first and less than the second [rad] to the same side: a leg that was drawn up for a turn
+and let go again within a few frames fluttered."""
 THERE, STAYS = 0.02, 0.05
 """Who turns on the spot does so until he is this near [rad] to the way that he is to face; who stands this near stays."""
 ENTRY, LEAVING = 0.1, 0.16
@@ -109,7 +112,13 @@ def begin_turn(m, turns, wish, row):
         wish[1] = 0.0
     if m.turn != 0.0:
         other = short_way(m.towards[0] - m.turns_to)
-        if not m.heads or abs(other) > OTHERWISE or (m.towards[1] > STANDS if m.spot else m.towards[1] < STANDS):
+        stays, afresh = m.heads and not (m.towards[1] > STANDS if m.spot else m.towards[1] < STANDS), 0.0
+        if not m.spot and m.turned < 0.0:
+            afresh = short_way(m.towards[0] - m.ground[2])
+            afresh += 2.0 * math.pi * (1.0 if m.turn > 0.0 else -1.0) * (afresh * m.turn < 0.0)
+        if stays and abs(other) > OTHERWISE and AFRESH[0] < abs(afresh) < AFRESH[1]:
+            enter_turn(m, turns, afresh, m.turned, row)
+        elif not stays or abs(other) > OTHERWISE:
             leave_turn(m)
         return
     if not m.heads or not (m.settled or m.waits or shift_left(m) > 0.0):

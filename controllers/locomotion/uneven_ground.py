@@ -28,12 +28,14 @@ RECOVERS = 0.35
 """Who slowed down for short steps takes up speed again by so much of the wish a second."""
 RISES, SINKS = 0.4, 0.5
 """A foot that goes up is up after this share of its swing; one that goes down stays up for that share of it."""
-DROPS, CLIMBS, OF_RUNNERS = 2.0, 3.0, 1.0
+DROPS, CLIMBS, OF_RUNNERS = 2.0, 3.0, 0.5
 """A foot that must stay over an edge goes down no faster than the first afterwards, nor up faster than the second [m/s], and by the third faster the more he runs on stairs; faster, too, as he
 steps oftener there."""
 HASTE = 50.0, 100.0, 200.0
 """A foot on its way up gets faster and slower by no more than the first [m/s²] of who runs, walks backward or aside, and the second of who walks ahead, whose
 knee is bent as it leaves: a straight one would be thrown; by so much more of who runs on stairs; all by the square of how much oftener he steps there."""
+GOES_ON = 0.5
+"""… and all of it of who goes ahead this fast [m/s]: who sets off before a riser has time, and his foot was thrown up by 8 cm in a frame."""
 LETS_GO = 0.5
 """A foot whose points grip no firmer than this together may go up before a riser."""
 TILT_HALFLIFE = 0.05
@@ -47,8 +49,8 @@ LOW = 0.06
 """A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
 RISER = 0.06
 """What lies so much higher before or behind a foot is no slope [m]."""
-BETWEEN = 20
-"""So many places on a foot's way are looked at for what it must pass over."""
+BETWEEN, SOME = 20, 6
+"""So many places on a foot's way are looked at for what it must pass over; and for whether there is anything."""
 SOON = 0.03
 """A foot that goes aside is looked for where it will be so much later [s]."""
 REACHES = 0.08
@@ -63,8 +65,9 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     body's level, which follows both. ahead: of the blend's feet (`foothold`); goes: (4, 2) how fast their points go in the world [m/s]. swing: the share of the cycle for which a foot swings."""
     under, place, bears, line = np.empty(3), np.empty(2), np.empty(2), np.empty((3, 2))
     bent = max(m.velocity[0], 0.0) / max(math.hypot(m.velocity[0], m.velocity[2]), 0.1) if m.family == WALK else 0.0
-    faster = sooner(m)
-    haste = (HASTE[0] + (HASTE[1] + HASTE[2] * m.runner - HASTE[0]) * bent) * faster * faster
+    goes_on = min(max(m.velocity[0], 0.0) / GOES_ON, 1.0)
+    faster, soon = sooner(m), 1.0 + goes_on * (sooner(m) - 1.0)
+    haste = (HASTE[0] + (HASTE[1] + HASTE[2] * m.runner - HASTE[0]) * bent * goes_on) * soon * soon
     for foot in range(2):
         bears[foot] = m.base[foot]
         ball = 2 * foot + 1
@@ -113,12 +116,15 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         if abs(under[0] - m.left[foot]) > SAME:
             path = max(path, _beneath(m, tops, floor, foot, max(under[0], m.left[foot]) + SAME, place))
         bearing = path
+        if under[0] > m.base[foot] > m.left[foot] + SAME and progress < RISES:  # a riser has sent it up already: on it goes, evenly
+            later = (RISES - progress) / (1.0 - progress) * ahead.until[foot]
+            path = max(path, m.base[foot] + (under[0] - m.base[foot]) * dt / max(later, dt))
         if over > max(under[0], m.left[foot]) + SAME:  # a foot passes over it, the body does not rise for that
             up, down = smooth(progress / RISES), smooth((progress - SINKS) / (1.0 - SINKS))
             path = max(path, min(m.left[foot] + (over - m.left[foot]) * up, over + (under[0] - over) * down),
                        _beneath(m, tops, floor, foot, over + SAME, place))
         before, goal = m.base[foot], max(path, rising, m.base[foot] - faster * DROPS * dt)
-        m.base[foot] = min(goal, before + _rises(m, foot, goal - before, haste, faster * (CLIMBS + OF_RUNNERS * m.runner), dt))
+        m.base[foot] = min(goal, before + _rises(m, foot, goal - before, haste, soon * (CLIMBS + OF_RUNNERS * m.runner * goes_on), dt))
         m.climb[foot] = max(m.base[foot] - before, 0.0) / dt
         m.high[foot] = m.base[foot] - under[0]
         bears[foot] = min(m.base[foot], bearing)
@@ -157,7 +163,7 @@ def _loose(m, tops, floor, foot, place, haste, dt):
     """How high the ground lies under a foot that has stood and has let go, or nearly, before it swings: over a riser that it comes to, up as its swing goes on to. Who steps back comes to none: his foot was
     thrown up for a frame or two, and dropped as it swung."""
     high = goal = _along(m, foot, place)
-    if m.velocity[0] > 0.0 and m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO:
+    if m.velocity[0] > 0.0 and m.grip[2 * foot] + m.grip[2 * foot + 1] <= LETS_GO and (m.base[foot] > high + SAME or _goes_over(m, tops, floor, foot)):
         riser = _beneath(m, tops, floor, foot, m.left[foot] + STEP + SAME, place)
         goal = riser if riser > high + RISER else high
     before = m.base[foot]
@@ -168,6 +174,19 @@ def _loose(m, tops, floor, foot, place, haste, dt):
     m.climb[foot] = max(now - before, 0.0) / dt if lifted else 0.0
     m.high[foot] = now - high  # it takes no hold up there
     return now
+
+
+@kernel
+def _goes_over(m, tops, floor, foot):
+    """Whether something that can be stepped on lies higher on the way of a foot that leaves to where it will come down: who turns beside a riser has none."""
+    ground = np.empty(3)
+    for k in range(SOME):
+        share = (k + 1.0) / SOME
+        x = m.left_at[foot, 0] + share * (m.coming[foot, 1, 0] + m.land[foot, 0] - m.left_at[foot, 0])
+        z = m.left_at[foot, 1] + share * (m.coming[foot, 1, 1] + m.land[foot, 1] - m.left_at[foot, 1])
+        if ground_kernel(tops, x, z, floor, m.level, ground) and RISER < ground[0] - m.left[foot] < 2.0 * STEP + SAME:
+            return True
+    return False
 
 
 @kernel
