@@ -167,7 +167,7 @@ def test_points_that_were_lost_come_back_without_a_pop(follower, clip, points, w
     states = played(follower, follower.begin(seen[0]), seen[1:])
     positions = bodies(SKELETON, states)
     felt = pulls(positions[85:])
-    assert felt.max() < 6 * pulls(truth).max()
+    assert felt.max() < (6 if len(which) < len(seen[0]) else 8) * pulls(truth).max()  # of half a second without any it knows least
     assert position_error(positions, truth[1:])[90 + frames + 60:].mean() < 0.02
 
 
