@@ -117,6 +117,10 @@ class Known(NamedTuple):
         return later._replace(pace=pace, change=None) if steps <= 1 else later._replace(change=(pace, steps - 1))
 
 
+STOPS = Known(stops=True, steps=0)
+"""Of who comes to rest, and leaps from there."""
+
+
 def course(state: CharacterState) -> float:
     """Which way [rad] somebody goes, or faces who stands."""
     if math.hypot(state.velocity[0], state.velocity[2]) < GOES:
@@ -206,7 +210,7 @@ class Ahead(Generic[S]):
                     best, change = found, (other, at)
             if change is not None:
                 break
-        return Known(stops=True, steps=0) if best is None else Known(pace[0], best.number, change)
+        return STOPS if best is None else Known(pace[0], best.number, change)
 
     def _until(self, at: int, way: list[tuple[S, CharacterState]]) -> Pieces[bool]:
         """Whether he still goes on as he does after so many steps; the way (of what asks and states, one a step) is played on until there."""

@@ -12,7 +12,7 @@ from gambol.controllers.contract import CharacterState, Intent, Leap, Status, bu
 from gambol.controllers.jump import MOMENTARY, Jumping, walks_to
 from gambol.controllers.navigation import Path, floor_at, follow, in_world, steer
 
-from .aside import ANEW, FAST, NEAREST, UNDER_WAY, Known, bent, beside, lands, room
+from .aside import ANEW, FAST, NEAREST, STOPS, UNDER_WAY, Known, bent, beside, lands, room
 from .moves import Jump, Move
 from .pilot import STEERING
 from .run_up import RunUp
@@ -156,7 +156,7 @@ class Making:
             speed, behind = float(np.hypot(state.velocity[0], state.velocity[2])), bool(way @ np.array(in_world(state.ground, intent.velocity)) < -PASSED * _pace(intent))
             if not self.turns and self._back(move, jump, state, far, speed, behind):
                 if abs(speed**2 / (2.0 * BRAKES) + (far if behind else -far)) < ANEW:
-                    return replace(self, aside=Known(stops=True, steps=0), turns=True), bent(state, 0.0, way)
+                    return replace(self, aside=STOPS, turns=True), bent(state, 0.0, way)
                 self = replace(self, turns=True)
             if not self.turns and behind:  # no run-up leads back
                 return replace(self, passed=self.asked > 0 and _straight(move)), intent
@@ -165,7 +165,7 @@ class Making:
             leads = self._leads(move, jump, far) and (self.turns or beside(state, way)) and state.active == "locomotion" and self.run_up.halt is None
             if leads and (ready or far <= usual + room(state, way, pace_of(move))):
                 if far < NEAREST and self.aside.lapsed:
-                    return replace(self, aside=Known(stops=True, steps=0), turns=True), bent(state, 0.0, way)
+                    return replace(self, aside=STOPS, turns=True), bent(state, 0.0, way)
                 self, intent = replace(self, turns=True), bent(state, self.aside.pace or pace_of(move), way)
                 leap = replace(leap, heading=lands(state, way)) if beside(state, way) else leap
             ready = ready and (not leads or far > NEAREST)
