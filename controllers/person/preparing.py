@@ -28,7 +28,7 @@ from ..jump import Jump, rehearse
 from ..jump.body import measures
 from ..jump.muscles import strength
 from ..locomotion import COLUMNS, SCRATCH, Locomotion, memory_dtype, step
-from ..navigation import Path, follow, gap
+from ..navigation import Path, clearance, floors_at, follow, room, slide
 from ..navigation.crowd import avoid
 from ..navigation.passing import NEAR, drawn_in, slow_kernel, walls_of, way_kernel
 from ..struck import Struck, rehearse as rehearse_strike
@@ -141,8 +141,10 @@ def beside(walker: Locomotion) -> tuple[Any, Any]:
 
 def things(walker: Locomotion) -> None:
     """Compile, or load, what keeps somebody who walks from what stands about and from others, and what sets him down at a run."""
-    for thing in (BOX, POST):
-        gap(np.zeros((1, 3)), thing)
+    clearance(np.zeros((1, 3)), (BOX, POST))
+    floors_at(np.zeros((1, 2)), (BOX, POST))
+    slide(np.zeros(2), np.array([0.0, 1.0]), 0.0, (BOX, POST))
+    room(np.zeros(2), 0.0, (BOX, POST))
     walls = walls_of((BOX, POST))
     slow_kernel(walls, 0.0, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 0.0, 1.0, 0.0)
     way_kernel(walls, 0.0, 0.0, 0.0, np.array([0.0, 1.0]), NEAR, 1.0, np.empty(3))

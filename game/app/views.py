@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.jump import HARD, PACE
-from gambol.controllers.navigation import gap
+from gambol.controllers.navigation import clearance
 
 from ..camera import seen_past
 from ..explain import AT_ONCE, NO, Preview, broken, explained, ghosts, led, pointed, preview, stepping
@@ -75,7 +75,7 @@ def _through(people: tuple[Figure, ...], moment: SessionState) -> tuple[Figure, 
         if one.follows is None and one.watches is None or not moment.after.props:
             continue
         trunk = np.ascontiguousarray(drawn[number].positions[: one.controller.skeleton.index("Head") + 1], float)  # from the hips up
-        far = min(float(gap(trunk, thing).min()) for thing in moment.after.props)
+        far = float(clearance(trunk, moment.after.props).min())
         share = min(max((far - WITHIN) / (NEAR - WITHIN), 0.0), 1.0)
         drawn[number] = replace(drawn[number], cover=min(drawn[number].cover, FAINT + (1.0 - FAINT) * share * share * (3.0 - 2.0 * share)))
     return tuple(drawn)

@@ -13,10 +13,11 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from gambol.controllers.body import damp, wrap
+from gambol.controllers.navigation import free_way
 
 from ..input import Wish
 from ..scene import Camera, Prop
-from .line_of_sight import FLOOR, above_floor, beside, free_way, off_faces, outside
+from .line_of_sight import FLOOR, MARGIN, above_floor, beside, off_faces, outside
 
 NEAREST = 1.4
 """An arm that walls make shorter than this [m] lifts the eye over the character instead, so that it stays farther off than 1.2 m."""
@@ -92,8 +93,8 @@ def _foreseen(root: np.ndarray, back: np.ndarray, velocity: np.ndarray, props: t
     if speed < 0.1:
         return math.inf
     ahead = np.array([velocity[0], 0.0, velocity[1]]) / speed
-    times = SOON[SOON * speed < free_way(root, ahead[None], props)[0]]
-    free = free_way(root + speed * times[:, None] * ahead, np.tile(back, (len(times), 1)), props)
+    times = SOON[SOON * speed < free_way(root, ahead[None], props, MARGIN)[0]]
+    free = free_way(root + speed * times[:, None] * ahead, np.tile(back, (len(times), 1)), props, MARGIN)
     return float((free + DRAWN * times).min(initial=math.inf))
 
 
@@ -204,7 +205,7 @@ class Armed(Turned):
         yaw, pitch = self._looks()
         pitch = max(pitch, -math.asin(min(max((root[1] - FLOOR) / longest, -1.0), 1.0)))
         back = -_forwards(yaw, pitch)
-        free = free_way(root, back, props)
+        free = free_way(root, back, props, MARGIN)
         slope = self.distance / WHISKER
         soft = min(float((free + slope * np.abs(_FAN).sum(-1)).min()), self.distance)
         s = self.settings
@@ -216,7 +217,7 @@ class Armed(Turned):
             up = np.array([[0.0, 1.0, 0.0]])
             # from a little before what shortened the arm: on its very margin the way up is free or not by rounding
             before = root + max(arm - SPARED, 0.0) * back[0]
-            eye = eye + min(nearest * (1.0 - (arm / nearest) ** 2), free_way(before, up, props)[0]) * up[0]
+            eye = eye + min(nearest * (1.0 - (arm / nearest) ** 2), free_way(before, up, props, MARGIN)[0]) * up[0]
         if not clear or arm < nearest or eye[1] < FLOOR:
             eye = outside(beside(above_floor(eye), ground), props)
         return replace(self, eye=eye, arm=arm)

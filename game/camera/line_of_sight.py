@@ -1,7 +1,7 @@
 """What stands in a camera's way: rays that stop at props, and points moved out of them.
 
 Props are swollen by a margin, so that an eye which stays outside sees no wall cut open by the
-near plane. Everything here takes a whole fan of rays and all props at once.
+near plane.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from gambol.controllers.navigation import gap
+from gambol.controllers.navigation import clearance, free_way
 
 from ..scene import Box, Pillar, Prop
 
@@ -61,41 +61,12 @@ def _solids(props: tuple[Prop, ...], margin: float) -> _Solids | None:
                    foot[:, 1] - margin, foot[:, 1] + np.array([p.height for p in pillars], float) + margin)
 
 
-def free_way(origin: np.ndarray, directions: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) -> np.ndarray:
-    """How far [m] from `origin`, (3,) or (W, 3), each ray (W, 3) of unit length is free: (W,), infinite without a prop.
-
-    0 where the origin lies inside of one. Slab method (Kay and Kajiya 1986) in each box's own
-    axes, and a quadratic for upright cylinders.
-    """
-    free = np.full(len(directions), np.inf)
-    solids = _solids(props, margin)
-    if solids is None:
-        return free
-    with np.errstate(divide="ignore", invalid="ignore"):
-        origin = np.broadcast_to(origin, directions.shape)
-        start = np.einsum("bij,bwj->bwi", solids.to_local, origin - solids.centre[:, None])
-        ray = _no_zeros(np.einsum("bij,wj->bwi", solids.to_local, directions))
-        half = solids.half[:, None]
-        first, second = (-half - start) / ray, (half - start) / ray
-        _stop(free, np.minimum(first, second).max(-1), np.maximum(first, second).min(-1))
-
-        flat, rise = directions[:, [0, 2]], _no_zeros(directions[:, 1])
-        across = origin[:, [0, 2]] - solids.axis[:, None]
-        a = np.maximum((flat ** 2).sum(-1), 1e-18)
-        b = (across * flat).sum(-1)
-        root = np.sqrt(b * b - a * ((across ** 2).sum(-1) - solids.radius[:, None] ** 2))  # NaN: misses
-        first, second = (solids.low[:, None] - origin[:, 1]) / rise, (solids.high[:, None] - origin[:, 1]) / rise
-        _stop(free, np.maximum((-b - root) / a, np.minimum(first, second)),
-              np.minimum((-b + root) / a, np.maximum(first, second)))
-    return free
-
-
 def as_far(origin: np.ndarray, way: np.ndarray, props: tuple[Prop, ...]) -> np.ndarray:
     """A way (3,) [m] from a point (3,), as far as it leads into nothing: what is looked at stays on this side of a wall and over the next tread."""
     far = float(np.linalg.norm(way))
     if far < 1e-6:
         return way
-    return way * min(float(free_way(outside(origin, props), way[None] / far, props)[0]) / far, 1.0)
+    return way * min(float(free_way(outside(origin, props), way[None] / far, props, MARGIN)[0]) / far, 1.0)
 
 
 def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) -> np.ndarray:
@@ -104,7 +75,7 @@ def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) 
     Where props overlap so that no face leads out, it ends above them: never inside of one.
     """
     point = np.array(point, float)
-    solids = _solids(props, margin)
+    solids = _solids(props, margin) if _near(point, props, margin) else None
     if solids is None:
         return point
     for _ in range(6):
@@ -120,7 +91,7 @@ def outside(point: np.ndarray, props: tuple[Prop, ...], margin: float = MARGIN) 
 def off_faces(point: np.ndarray, room: float, props: tuple[Prop, ...]) -> np.ndarray:
     """The point (3,) outside of props, led so far off those nearer than `room` [m] that it is no nearer, as far as there is room for that: smoothly as
     it moves, on the way between two as on the way past a corner."""
-    solids = _solids(props, MARGIN)
+    solids = _solids(props, MARGIN) if _near(point, props, MARGIN + room) else None
     if solids is None:
         return point
     local = np.einsum("bij,bj->bi", solids.to_local, point - solids.centre)
@@ -137,20 +108,12 @@ def off_faces(point: np.ndarray, room: float, props: tuple[Prop, ...]) -> np.nda
 
 def blocked(point: np.ndarray, props: tuple[Prop, ...], margin: float = 0.1) -> int | None:
     """The number of a prop that a point (3,) lies inside of, or nearer to than `margin` [m], if there is one."""
-    at = np.asarray(point, float)[None]
-    return next((i for i, prop in enumerate(props) if gap(at, prop)[0] < margin), None)
+    return next((i for i, prop in enumerate(props) if clearance(point, (prop,)) < margin), None) if clearance(point, props) < margin else None
 
 
-def _no_zeros(x: np.ndarray) -> np.ndarray:
-    return np.where(np.abs(x) < 1e-12, 1e-12, x)
-
-
-def _stop(free: np.ndarray, enter: np.ndarray, leave: np.ndarray) -> None:
-    """Shorten `free` (W,) to where rays enter what they leave again; enter, leave: (N, W)."""
-    enter = np.maximum(enter, 0.0)
-    blocked = np.where(leave > enter + 1e-9, enter, np.inf)
-    if len(blocked):
-        np.minimum(free, blocked.min(0), out=free)
+def _near(point: np.ndarray, props: tuple[Prop, ...], margin: float) -> bool:
+    """Whether a point (3,) may lie in something that is swollen by a margin [m], whose corners are farther away."""
+    return bool(clearance(point, props) < 2.0 * margin)
 
 
 def _way_out(point: np.ndarray, solids: _Solids) -> np.ndarray | None:

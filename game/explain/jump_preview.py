@@ -15,7 +15,7 @@ from gambol.controllers.jump import FRESH, LIKE, RUNNING, Jump, Physique, goes
 from gambol.controllers.jump.body import Start, along
 from gambol.controllers.jump.motion import Path, Plan
 from gambol.controllers.jump.reach import Touch
-from gambol.controllers.navigation import gap
+from gambol.controllers.navigation import clearance
 
 from ..input import AHEAD, Aim, jumping, landing, leaving
 from ..scene import Goal, Prop
@@ -142,7 +142,7 @@ def preview(character: Character, aim: Aim, props: Sequence[Prop], before: Previ
 def _running(jump: Jump, start: Start, leap: Leap, floor: float, solid: Sequence[Prop], seen: Preview, before: Preview | None, crew: Executor) -> Preview:
     """The same preview of who runs, with what he would have touched as this was last found out, which begins anew as soon as it is: he is
     elsewhere in every frame."""
-    if not any(gap(seen.arc, thing).min() < BESIDE for thing in solid):
+    if clearance(seen.arc, solid).min() >= BESIDE:
         return seen
     seeking = None if before is None else before.seeking
     if before is not None and seeking is not None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import CharacterState
-from gambol.controllers.navigation import floor_at, slope_at
+from gambol.controllers.navigation import floor_at, floors_at, slope_at
 
 from .straight_ahead import RISES, UP, onto
 
@@ -45,7 +45,7 @@ def at_hand(state: CharacterState, way: Sequence[float], around: Sequence[Any]) 
     if goes == 0.0 or not len(around) or math.hypot(state.velocity[0], state.velocity[2]) > WALKS:
         return None
     here = np.asarray(state.ground[:2], float)
-    if not any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in here + AT_HAND[:, None] * np.asarray(way, float) / goes):
+    if not (floors_at(here + AT_HAND[:, None] * np.asarray(way, float) / goes, around, floor + UP) > floor + RISES).any():
         return None
     lies = onto(state, way, around)
     if lies is None:
@@ -72,5 +72,5 @@ def past_edge(place: tuple[float, float], here: tuple[float, float], high: float
 
 def _even(place: tuple[float, float], floor: float, around: Sequence[Any]) -> bool:
     """Whether the floor is of one height all round a place (2,)."""
-    here = floor_at(*place, around, floor + UP)
-    return all(abs(floor_at(x, z, around, floor + UP) - here) < LEVEL for x, z in np.asarray(place) + SOLES * ROUND)
+    round_it = floors_at(np.asarray(place) + SOLES * ROUND, around, floor + UP)
+    return bool((abs(round_it - floor_at(*place, around, floor + UP)) < LEVEL).all())

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gambol.controllers.contract import CharacterState
-from gambol.controllers.navigation import STEP, floor_at, gap, in_world, room
+from gambol.controllers.navigation import STEP, clearance, floor_at, floors_at, in_world, room
 
 TOUCHES = 0.19
 """Nearer to its middle nothing solid may come to a body that has not leapt yet [m]: walls hold up at 0.18 who treads on before them."""
@@ -105,8 +105,9 @@ def lacking(place: np.ndarray, ahead: np.ndarray, floor: float, around: Sequence
     """How much farther [m] a body of a size at a place (2,) on a floor [m] would have to be from what lies ahead (2,) of it, no farther than `within` [m], to leap onto that, and
     `more` [m] at standard height farther."""
     lacks, risen, left = 0.0, 0.0, LEGS * size * np.array([ahead[1], -ahead[0]])
-    for far in np.arange(0.0, min((CLEARS[-1][1] + more) * size, within), FINE):
-        rise = max(floor_at(float(x), float(z), around, floor + UP) for x, z in (place + far * ahead + left, place + far * ahead - left)) - floor
+    far_on = np.arange(0.0, min((CLEARS[-1][1] + more) * size, within), FINE)
+    legs = place + far_on[:, None, None] * ahead + np.array([left, -left])
+    for far, rise in zip(far_on, floors_at(legs, around, floor + UP).max(-1) - floor):
         if rise > risen:
             risen = rise
             clear = clear_of(rise, size)
@@ -148,7 +149,7 @@ def rises(controller: Any, state: CharacterState, velocity: Sequence[float], aro
     floor, ahead, speed = float(state.floor), np.asarray(velocity, float), math.hypot(*velocity)
     count = 2 + int((share * (STOPS[0] + STOPS[1] * speed**2 / agility(controller)) + more) / PACE)
     places = np.asarray(state.ground[:2], float) + np.arange(1, count)[:, None] * PACE * ahead / speed
-    return any(floor_at(float(x), float(z), around, floor + UP) > floor + RISES for x, z in places)
+    return bool((floors_at(places, around, floor + UP) > floor + RISES).any())
 
 
 def agility(controller: Any) -> float:
@@ -164,7 +165,7 @@ def is_edge(place: np.ndarray, floor: float, around: Sequence[Any]) -> bool:
 def touches(place: np.ndarray, floor: float, around: Sequence[Any], near: float = TOUCHES) -> bool:
     """Whether something solid is as near to a body at a place (2,)."""
     body = np.array([[place[0], floor + height, place[1]] for height in BODY])
-    return any(gap(body, thing).min() < near for thing in around)
+    return bool((clearance(body, around) < near).any())
 
 
 def even_ahead(state: CharacterState, around: Sequence[Any]) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gambol.controllers.contract import Goal
-from gambol.controllers.navigation import Steering, floor_at, gap
+from gambol.controllers.navigation import Steering, clearance, floor_at
 
 from ..camera import Follow, PlayerCamera, between
 from ..input import STEERING, Aim, Pilot, RunUp, Script
@@ -112,7 +112,7 @@ def newcomer(controller: Any, number: int, ground: np.ndarray, level: float = 0.
         x, z = float(ground[0] - side * np.cos(heading)), float(ground[1] + side * np.sin(heading))
         floor = floor_at(x, z, props, level + STEP)
         body = np.array([x, floor, z]) + BODY
-        if all((gap(body, thing) > ROOM).all() for thing in props):
+        if (clearance(body, props) > ROOM).all():
             break
     return Character(f"Player {number + 1}", controller, tint=TINTS[number], state=controller.start((x, z, heading), floor))
 

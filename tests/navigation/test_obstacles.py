@@ -1,5 +1,8 @@
 """Walkers keep out of what stands about, whatever their speed, and get out again where they stand in it."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +11,7 @@ from hypothesis import strategies as st
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.navigation import steer
-from gambol.controllers.navigation.obstacles import HEAD, SHOULDER, changed, floor_at, gap, matters, slide
+from gambol.controllers.navigation.obstacles import HEAD, SHOULDER, changed, clearance, floor_at, floors_at, free_way, gap, matters, room, rooms, slide, solids_of
 from gambol.game.scene.scene import Box, Pillar
 
 BOX = Box((0.0, 0.3, 4.0), (1.6, 0.6, 1.0), 0.0)
@@ -101,3 +104,54 @@ def test_a_ramp_too_steep_to_walk_on_holds_up(slope):
     for _ in range(240):
         state, _ = locomotion.step(state, Intent(np.array([1.2, 0.0, 0.0]), around=(ramp,)), 1 / 60)
     assert 1.5 < state.ground[1] < 2.0 - 0.15 and state.floor < 0.05
+
+
+def scattered(seed):
+    """Boxes, ramps and pillars at random, and a place that things stop nobody at."""
+    rng = np.random.default_rng(seed)
+    boxes = [Box(tuple(rng.uniform(-2.0, 2.0, 3)), tuple(rng.uniform(0.1, 2.0, 3)), rng.uniform(-3.0, 3.0), slope=rng.choice([0.0, rng.uniform(-0.3, 0.3)])) for _ in range(4)]
+    pillars = [Pillar(tuple(rng.uniform(-2.0, 2.0, 3)), rng.uniform(0.05, 0.5), rng.uniform(0.2, 2.0)) for _ in range(2)]
+    return (*boxes, SimpleNamespace(place=(0.0, 0.0, 0.0)), *pillars)
+
+
+@given(st.integers(0, 10**6))
+def test_all_things_at_once_are_as_one_after_the_other(seed):
+    things, rng = scattered(seed), np.random.default_rng(seed + 1)
+    points, places, floor = rng.uniform(-3.0, 3.0, (2, 5, 3)), rng.uniform(-3.0, 3.0, (2, 5, 2)), rng.uniform(-0.2, 1.0)
+    assert np.array_equal(clearance(points, things), np.min([[gap(row, thing) for row in points] for thing in things], 0))
+    each = [[max(floor_at(x, z, [thing], floor) for thing in things) for x, z in row] for row in places]
+    assert np.array_equal(floors_at(places, things, floor), each)
+    assert np.array_equal(rooms(places, floor, things), [[room(place, floor, things) for place in row] for row in places])
+    assert (clearance(points, things[4:5]) == np.inf).all()
+
+
+@given(st.integers(0, 10**6), st.floats(0.0, 0.3))
+def test_a_ray_is_free_until_it_is_in_what_is_swollen(seed, margin):
+    """Marched along in small steps, where things are swollen by measuring from larger ones."""
+    things, rng = scattered(seed), np.random.default_rng(seed + 1)
+    large = [replace(thing, size=tuple(np.add(thing.size, 2.0 * margin))) if isinstance(thing, Box) else
+             replace(thing, foot=tuple(np.subtract(thing.foot, (0.0, margin, 0.0))), radius=thing.radius + margin, height=thing.height + 2.0 * margin)
+             for thing in things if isinstance(thing, (Box, Pillar))]
+    origin, way = rng.uniform(-3.0, 3.0, 3), rng.normal(size=3)
+    way /= np.linalg.norm(way)
+    far = np.arange(0.0, 8.0, 0.004)
+    within = clearance(origin + far[:, None] * way, large) < 0.0
+    free = free_way(origin, way[None], things, margin)[0]
+    assert not within[far < free - 1e-9].any()
+    if free < far[-1] - 0.01:
+        deepest = clearance(origin + (free + np.linspace(0.0, 0.004, 9))[:, None] * way, large).min()
+        assert deepest < 1e-6, "it meets something there"
+
+
+def test_what_can_be_moved_is_looked_at_anew_and_what_can_not_only_once():
+    """A tuple may hold things that its owner moves between two steps."""
+    crate = SimpleNamespace(centre=[0.0, 0.5, 0.0], size=(1.0, 1.0, 1.0), heading=0.0)
+    moved, fixed = (crate,), (BOX, WALL)
+    assert floor_at(0.0, 0.0, moved) == 1.0
+    crate.centre[0] = 3.0
+    assert floor_at(0.0, 0.0, moved) == 0.0 and floor_at(3.0, 0.0, moved) == 1.0
+    in_array = (Box(np.zeros(3), (1.0, 1.0, 1.0), 0.0),)  # frozen, but for what it holds
+    assert floor_at(0.0, 0.0, in_array) == 0.5
+    in_array[0].centre[1] = 1.0
+    assert floor_at(0.0, 0.0, in_array) == 1.5
+    assert solids_of(fixed) is solids_of(fixed) and solids_of(moved) is not solids_of(moved)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...body import Skeleton, end_positions, forward_kinematics, sole_corners
-from ...navigation import gap
+from ...navigation import clearance, gap
 from ..body import Physique
 
 NEAR = 1.3
@@ -38,15 +38,13 @@ def deepest(physique: Physique, roots: np.ndarray, local: np.ndarray, around: Se
     """How deep (N,) [m] bodies in poses (N, 3), (N, J, 3, 3) lie in what stands about, beyond what they may graze; 0 where nowhere."""
     positions, turned = forward_kinematics(physique.skeleton, roots, local)
     _, _, every, thick = capsule_places(physique, positions, turned)
-    deep = np.zeros(len(every))
-    for thing in around:
-        deep = np.maximum(deep, (thick - gap(every.reshape(-1, 3), thing).reshape(every.shape[:-1])).max(-1))
-    return deep
+    return np.maximum((thick - clearance(every, around)).max(-1), 0.0)
 
 
 def near(physique: Physique, centres: np.ndarray, around: Sequence[Any]) -> list[Any]:
     """What of the things around a body can touch whose mass centre comes by places (N, 3) [m]."""
-    return [thing for thing in around if not hasattr(thing, "place") and gap(centres, thing).min() < NEAR * physique.size]
+    far = NEAR * physique.size
+    return [thing for thing in around if gap(centres, thing).min() < far] if clearance(centres, around).min() < far else []
 
 
 def capsule_places(physique: Physique, positions: np.ndarray, turned: np.ndarray) -> tuple[list[str], list[int], np.ndarray, np.ndarray]:

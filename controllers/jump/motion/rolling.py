@@ -17,7 +17,7 @@ import numpy as np
 from gambol import assets
 
 from ...body import centre_of_mass, exp, forward_kinematics, yaw
-from ...navigation import floor_at, gap
+from ...navigation import clearance, floor_at
 from ..body import Physique, hermite, monotone
 from .lying import FEET, TOUCHES, grounded_poses, places
 from .path_estimate import Path
@@ -113,7 +113,7 @@ def room(physique: Physique, made: Plan, around: Sequence[Any]) -> bool:
         if abs(floor_at(x, z, around, floor + FLUSH) - floor) > FLUSH:
             return False
     positions = forward_kinematics(physique.skeleton, made.roots[after], made.local[after])[0][::4].reshape(-1, 3)
-    return all(gap(positions, thing).min() > 0.0 for thing in around if not hasattr(thing, "place"))
+    return bool(clearance(positions, around).min() > 0.0)
 
 
 def rolled(physique: Physique, made: Plan) -> Plan:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...contract import level
-from ...navigation import floor_at, gap, slope_at
+from ...navigation import clearance, floor_at, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, over_ledge, path
 from ..prior import Prior
@@ -76,7 +76,7 @@ class Arcs:
             if np.hypot(*slope) > STEEPEST:
                 return f"too steep to leap {way}: {np.degrees(np.arctan(np.hypot(*slope))):.0f}°, where {np.degrees(np.arctan(STEEPEST)):.0f}° can be"
         around = [thing for thing in around if not hasattr(thing, "place")]
-        if any(gap(place[None] + [0.0, 0.05, 0.0], thing)[0] < 0.0 for thing in around):
+        if clearance(place + [0.0, 0.05, 0.0], around) < 0.0:
             return "that place is inside something solid"
         below = floor_at(place[0], place[2], around, place[1] + FLUSH)
         if around and below < place[1] - FLUSH:

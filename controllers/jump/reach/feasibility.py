@@ -9,7 +9,7 @@ import numpy as np
 
 from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ...contract import Unable
-from ...navigation import gap
+from ...navigation import clearance
 from ..body import FLAT, TURNED, Physique, Start, along, measures, carriage, turns
 from ..motion import SPINS, Path, Plan, rolls
 from ..muscles import strongest
@@ -173,11 +173,9 @@ def blocked(physique: Physique, way: Path, around: Sequence[Any]) -> str:
             ("legs", -(measures(physique).stand - 0.12 * size) * tucked[:, None] * upward, 0.08, slice(4, -4)),
             ("hands", hands, 0.10, slice(0, None))):
         places = (centre + offset)[..., inner, :].reshape(-1, 3)
-        for thing in around:
-            near = gap(places, thing)
-            if near.min() < radius * size - GRAZE:
-                ahead = np.linalg.norm((places[int(near.argmin())] - way.leave)[[0, 2]])
-                return hits(name, float(ahead))
+        near = clearance(places, around)
+        if near.min() < radius * size - GRAZE:
+            return hits(name, float(np.linalg.norm((places[int(near.argmin())] - way.leave)[[0, 2]])))
     return ""
 
 
