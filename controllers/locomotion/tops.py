@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..compiled import kernel
-from ..navigation import checked, is_box, is_pillar, slope
+from ..navigation import checked, is_box, is_pillar, of_the_same, slope
 from ..navigation.passing import STEP
 
 SEEN = 0.8
@@ -22,6 +22,7 @@ FLAT = np.zeros((0, 9))
 """No tops: the ground is the character's own floor."""
 
 
+@of_the_same
 def tops(around: Sequence[Any]) -> np.ndarray:
     """The tops (M, 9) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
     along [m], height [m], slope along, and how high they begin [m]; and pillars, as squares as large that nobody stands on.

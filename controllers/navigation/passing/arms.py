@@ -17,8 +17,8 @@ import numpy as np
 
 from ...body import Pose, Skeleton, exp, log, relative_kernel, settle
 from ...compiled import kernel
-from ..obstacles import is_box, is_pillar, ramp, slope, span
 from ..routes import distance
+from .walls import walls_of
 
 ARMS = ("LeftArm", "LeftForeArm", "LeftHand"), ("RightArm", "RightForeArm", "RightHand")
 THICK = 0.045, 0.04, 0.035
@@ -101,18 +101,12 @@ def _drawn(skeleton: Skeleton, pose: Pose, ground: np.ndarray, things: Sequence[
 
 def _near(x: float, z: float, around: Sequence[Any]) -> list[tuple[float, ...]]:
     """What is near enough: shapes of SHAPE numbers as of `shapes_of`, how low and how high they reach [m], ramps where they are nearest."""
-    found = []
-    for thing in around:
-        if is_box(thing):
-            centre, size, rise = thing.centre, thing.size, 0.0
-            if math.hypot(centre[0] - x, centre[2] - z) < FAR + 0.5 * math.hypot(size[0], size[2]):
-                if ramp(thing):
-                    along = math.sin(thing.heading) * (x - centre[0]) + math.cos(thing.heading) * (z - centre[2])
-                    rise = slope(thing) * min(max(along, -0.5 * size[2]), 0.5 * size[2])
-                low, high = span(thing)
-                found.append((centre[0], centre[2], 0.5 * size[0], 0.5 * size[2], thing.heading, 0.0, low + rise, high + rise))
-        elif is_pillar(thing) and math.hypot(thing.foot[0] - x, thing.foot[2] - z) < FAR + thing.radius:
-            found.append((thing.foot[0], thing.foot[2], 0.0, 0.0, 0.0, thing.radius, thing.foot[1], thing.foot[1] + thing.height))
+    walls, found = walls_of(around), []
+    for k in np.flatnonzero(np.hypot(walls[:, 0] - x, walls[:, 1] - z) < FAR + np.hypot(walls[:, 2], walls[:, 3]) + walls[:, 5]):
+        *shape, low, high, slope = walls[k].tolist()
+        along = math.sin(shape[4]) * (x - shape[0]) + math.cos(shape[4]) * (z - shape[1])
+        rise = slope * min(max(along, -shape[3]), shape[3])
+        found.append((*shape, low + rise, high + rise))
     return found
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...compiled import kernel
-from ..obstacles import is_box, is_pillar, ramp, slope, span
+from ..obstacles import is_box, is_pillar, of_the_same, ramp, slope, span
 from ..routes import distance
 
 STEP, HEAD = 0.30, 1.7
@@ -36,6 +36,7 @@ PACE = 0.1
 """Over a ramp and beside what is low of it a straight way is followed no less than so far at a time [m]."""
 
 
+@of_the_same
 def walls_of(around: Sequence[Any]) -> np.ndarray:
     """What stands about, as kernels here take it, (K, 9): centre x, z [m], half width and half length [m], heading [rad] and radius, as shapes have
     them; how low and how high it reaches [m], a ramp in its middle, and a ramp's slope."""
