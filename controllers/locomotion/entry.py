@@ -89,6 +89,7 @@ def entered(locomotion: Any, state: CharacterState, wish: float = 0.0) -> Charac
     memory["standing"] = memory["grip"] = stands
     memory["bears"] = memory["taut"] = memory["grip"][1::2]
     memory["stood"] = points[:, [0, 2]]
+    memory["felt"] = 0  # he did not set off from rest, nor stood there
     memory["left_at"] = points[1::2, [0, 2]]  # a foot in the air passes over what lies from here on, not from where nobody was
     memory["offset"] = memory["offset_rate"] = memory["offset_push"] = memory["raised"] = memory["raised_rate"] = 0.0
     high = points[:, 1] - contact_height(locomotion.skeleton)

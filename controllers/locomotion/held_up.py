@@ -36,7 +36,7 @@ ARMS, HANDS = 0.6, 0.5
 def held_up(memory: np.ndarray, wish: np.ndarray, floors: np.ndarray, walls: np.ndarray, dt: float) -> None:
     """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap only towards those that nobody leaps onto.
     Take away the wishes (N, 3) that lead nowhere. Note whose feet, and of those who stand whose arms, have no room. floors: (N,) [m]."""
-    memory["cramped"] = 0
+    memory["cramped"] = memory["walled"] = 0
     if len(walls):
         hold_kernel(memory, wish, floors, walls, dt)
 
@@ -74,6 +74,7 @@ def hold_kernel(memory, wish, floors, walls, dt):
         rate[0], rate[1] = velocity[0], velocity[1]
         if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], velocity, NEAR, LAG, BRAKE, BACK, LEAPT if m.alert else STEP):
             _evenly(rate, velocity, dt)
+            m.walled = 1
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
             # nor does what is under way go on towards it
             x, z = velocity[0] - rate[0], velocity[1] - rate[1]

@@ -181,6 +181,7 @@ def memory_dtype(primitives: int) -> np.dtype:
         ("looks", "i4"), ("look", "f4", 3),  # whether there is a place to look at, and which
         ("gaze", "f4", 2), ("gaze_rate", "f4", 2),  # how far the head turns and nods
         ("braked", "f4", 2),  # how far the trunk leans against its braking, and how fast
+        ("felt", "i4"), ("mass", "f8", 3), ("mass_rate", "f8", 3), ("pull", "f4", 3), ("went", "f8", 2), ("walled", "i4"), ("lag", "f8", 2), ("lag_rate", "f8", 2),  # for how many steps it is told where the mass centre is off the ground frame, along the world's axes [m], how fast and how hard it goes there; how fast the ground frame went; whether walls slow it down; how far [m] it lags behind its command, x, z in the world, and how fast that changes
         ("ran", "f4"), ("carried", "f4", 2),  # how lately it ran (0 … 1), how far its elbows are carried bent for it, and how fast that changes
     ], align=True)
 
@@ -193,7 +194,8 @@ def put(memory: np.ndarray, ground: np.ndarray) -> None:
         memory[name][..., axes] = compose(turn, _flat(memory[name][..., axes]))[..., :2]
     for name in ("stood", "left_at", "coming"):
         memory[name] = _carried(memory[name], memory["ground"], ground)
-    memory["halts"] = 0
+    memory["halts"] = memory["felt"] = 0
+    memory["lag"] = memory["lag_rate"] = 0.0
     memory["ground"], memory["aimed"] = ground, 0
 
 

@@ -39,4 +39,5 @@ def pushed(state: CharacterState, change: np.ndarray) -> CharacterState | None:
     memory, gained = memory.copy(), np.array([ahead, 0.0, left])
     memory["command"] += gained
     memory["velocity"] += gained
+    memory["went"] += change
     return replace(state, velocity=np.asarray(state.velocity, float) + gained, memory=memory)

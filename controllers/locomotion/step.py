@@ -26,6 +26,7 @@ from .kernel import ACTIVE, COLUMNS, DURATION_AT, HIPS_AT, LABELS_AT, LANES, SCR
 from .memory import RUN, WALK
 from .root_motion import SHORTEST, cadence_kernel, follow_command, locate, tempo_kernel, to_world_kernel
 from .sitting_back import sit_back
+from .traction import keep_traction, make_up
 from .turning_back import pivots, turn_back, turn_corner
 from .turning_step import after_turn, begin_turn, end_turn, lead_turn, turned_row
 from .uneven_ground import stand_on
@@ -41,7 +42,7 @@ STRAIGHT = 0.2
 
 
 @kernel(nogil=True)
-def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, start, turns, tops,
+def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, changes, idle, start, turns, masses, tops,
                 floors, root, local):
     """Step every character of `memory` (N,) by dt towards its wish (N, 3); write root and local pose.
 
@@ -55,12 +56,13 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
     scratch = np.empty(SCRATCH, np.float32)
     fresh = np.empty(COLUMNS, np.float32)
     work = np.empty((5, 3, 3), np.float64)
-    before = np.empty((4, 2))
+    before, came = np.empty((4, 2)), np.empty(2)
     b, p, q, c = np.empty(4), np.empty(3), np.empty(3), np.empty(3)
     ahead = room_to_plan(memory["weights"].shape[1], joints)
     for n in range(memory.shape[0]):
         m = memory[n]
         on_floor(m, before)  # before a turn leads the ground frame back
+        came[0], came[1] = m.ground[0], m.ground[1]
         heed_halt(m, wish[n], settings, table, dt)
         onset, first = m.onset, m.first
         pace = _share_of_cycle(m, table, settings.agility, dt) / dt if onset > 0.0 else 0.0
@@ -95,12 +97,14 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         gaze_kernel(m, wish[n], settings.gaze, legs.neck, fresh, dt)
         pose_kernel(body, fresh, local[n], positions, orientations, scratch)
         follow_command(m, dt)
+        make_up(m, dt)
         foot_points(body, legs, positions, orientations, m.points)
         stride(m, m.points, positions)
         if settings.footing:
             toe_ends(body, legs, positions, orientations, ahead.toe)
             plan_footholds(m, settings, walk if m.family == WALK else run, table, turns, body, legs, ahead, tops.shape[0] == 0, dt)
             place_feet(m, body, legs, ahead, settings.clearance, tops, floors[n], before, positions, orientations, local[n], dt, work)
+            keep_traction(m, masses, legs, settings, came, floors[n], positions, orientations, local[n], dt, work)
         else:
             for k in range(4):
                 m.grip[k] = 1.0 if m.settled or m.row[LABELS_AT + k] > 0.5 else 0.0

@@ -13,6 +13,7 @@ from .kernel import Body, Space, body_tables, series_table, space_tables
 from .library import Library
 from .memory import Legs, legs_of
 from .first_stride import Starting, starting
+from .traction import Masses, masses_of
 from .turning_step import Turning, turning
 
 
@@ -28,6 +29,7 @@ class Tables(NamedTuple):
     idle: Idling
     start: Starting
     turns: Turning
+    masses: Masses
 
 
 def tables_of(library: Library, walk: ControlSpace, run: ControlSpace | None) -> Tables:
@@ -35,4 +37,4 @@ def tables_of(library: Library, walk: ControlSpace, run: ControlSpace | None) ->
     walking = space_tables(walk, library.family("walk"))
     running = space_tables(run, library.family("run")) if run else walking
     return Tables(body_tables(library), legs_of(library), walking, running, series_table(library),
-                  changes(library, walk, run), idling(library), starting(library), turning(library))
+                  changes(library, walk, run), idling(library), starting(library), turning(library), masses_of(library.skeleton))

@@ -104,7 +104,7 @@ def feet(walker: Locomotion) -> None:
 def rest(walker: Locomotion) -> None:
     """Compile what a step needs before it places the feet."""
     memory, body, legs, places, turns, local, dt = _some(walker)
-    _, _, walk, run, table, changes, _, start, turning = walker.tables
+    _, _, walk, run, table, changes, _, start, turning, _ = walker.tables
     settings, row, three = walker.settings, np.zeros(COLUMNS, np.float32), np.zeros(3)
     _compile(step._weigh, memory, settings, dt, walk, run, table, changes, row, np.zeros(4), three, three, three)
     _compile(step.shape_command, memory, three, dt, dt, settings, table, walk, run, legs.stance, three, three)
