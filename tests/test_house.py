@@ -111,7 +111,7 @@ PLAN = {
         "driven": "body contract",
         "supervisor": "body contract navigation navigation.passing",
         "jump.muscles": "compiled jump.body",
-        "jump.prior": "files body jump.body mocap",
+        "jump.prior": "compiled files body jump.body mocap",
         "jump": "body contract navigation.passing",
         "tracking": "body contract driven files",
         "tracking.twists": "compiled body",
