@@ -54,11 +54,11 @@ class Searches(Answers):
     def _seeks(self, state: CharacterState, intent: Intent) -> Onward:
         """The beginning of seeking from a state."""
         place = None if intent.leap is None else intent.leap.place
-        return Onward(Seeking(self._looked_for(state, intent, self._waits(state))), 0, np.array(state.pose.root, float), place)
+        return Onward(Seeking(self._looked_for(state, intent, self._waits(state), True)), 0, np.array(state.pose.root, float), place)
 
-    def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
+    def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False, goes_on: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.
-        parted: whether plans are pieces of it, too."""
+        parted: whether plans are pieces of it, too. goes_on: whether somebody goes on meanwhile, who is told no place by a footfall that he could come to from this one."""
         leap = intent.leap
         if leap is None:
             raise Refused("nobody asked for a jump")
@@ -89,11 +89,13 @@ class Searches(Answers):
                 return too_weak(self.physique, usual, self.longest), None, here
         ahead = (place - here) / max(float(np.linalg.norm(place - here)), 1e-9)
         if leap.slack > 0.0 and max((self.easy(start, floor) - place) @ ahead) > 0.0:  # else the nearest place is no farther on
-            nearest, found = whole(self.nearby(*asked))
+            nearest, found = whole(self.nearby(*asked, within=leap.slack))
             if nearest is not None and found is not None and 0.0 < float((nearest - place) @ ahead) <= leap.slack:
                 return found
         else:
             if leap.slack == 0.0:
+                if goes_on and start.runs:
+                    return reason, None, here
                 yield reason
             nearest, found = yield from self.nearby(*asked)
             if nearest is not None and found is not None and np.linalg.norm(nearest - place) <= leap.slack and abs(nearest[1] - place[1]) <= LEVELS:

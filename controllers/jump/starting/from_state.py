@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from ...body import Pose, Skeleton, centre_of_mass, forward_kinematics, wrap
@@ -14,7 +16,12 @@ RUNNING = 0.95
 
 
 def start_of(physique: Physique, state: CharacterState, crouched: bool = False) -> Start:
-    """What a jump of a body needs to know of a state. crouched: whether it crouches already."""
+    """What a jump of a body needs to know of a state. crouched: whether it crouches already. Found once for a state: whether a leap can start is asked of it several times in a step."""
+    return _start_of(physique, state, crouched)  # however it is called
+
+
+@lru_cache(maxsize=8)
+def _start_of(physique: Physique, state: CharacterState, crouched: bool) -> Start:
     skeleton, masses = physique.skeleton, physique.anatomy
     pose = Pose(np.asarray(state.pose.root, float), np.asarray(state.pose.rotations, float))
     positions, turned = forward_kinematics(skeleton, pose.root, pose.rotations)

@@ -28,6 +28,8 @@ BETWEEN, HIGHEST = np.linspace(0.1, 1.0, 10), 2.0
 STEEPLY, DOWNHILL = 0.21, -0.05
 """Up what rises by more than the first a metre no leg pushes off in so short a time, and down it a foot that strikes carries him on; hands wait for no other down what
 falls by more than the second."""
+SOON = 8.0
+"""No foot of his next ones sends a walker to what is farther away than this [m], on Earth, up to standard height: what it can send him, and the way of his steps until then, come to 6 m at most."""
 STEPS = 0.36
 """Onto what lies higher than this over his way, or lower [m], nobody leaps off the foot under him."""
 BACK = 0.8
@@ -73,6 +75,8 @@ def off_under(physique: Physique, start: Start, leap: Leap | None, state: Charac
     if leap is None or not leaves_under(state, leap, around):
         return start, False
     place, waits = np.asarray(leap.place, float), False
+    if math.hypot(place[0] - state.ground[0], place[2] - state.ground[1]) > SOON * max(physique.size, 1.0) * max(math.sqrt(9.81 / gravity), 1.0):
+        return start, False
     (level, slope), here, way = ground(state, around), np.asarray(state.ground, float)[:2], goes(state)
     steep = float(slope @ way[[0, 2]]) / float(np.linalg.norm(way))
     if leap.slack > 0.0 and steep < DOWNHILL:
