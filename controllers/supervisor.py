@@ -205,20 +205,20 @@ class Supervisor(Controller):
         status = active.status(own)
         # one that ended holds on to nothing
         hold = active.precondition(own, intent) if status.kind == "running" else 0.0
-        bids = {name: other.precondition(own, intent)
-                for name, other in self.parts.items() if name != duty.active}
         gone_wrong = "" if status.kind == "done" else status.reason
         refused = "" if intent.leap is None else duty.refused
         asked = None if intent.leap is None else duty.asked
+        again = asked is not None and asked.still(own, intent)
+        # who has refused for good, as long as the same is asked from the same place, need not say how well it could
+        bids = {name: other.precondition(own, intent) for name, other in self.parts.items()
+                if name != duty.active and not (again and asked is not None and asked.onward is None and asked.name == name)}
         for name, bid in bids.items():
             if not isinstance(bid, float | int | np.floating) or not bid >= 0.0:
                 raise ValueError(f"the precondition of the controller {name!r} must be a number, 0 or more; got {bid!r}")
         for name in sorted(bids, key=bids.__getitem__, reverse=True):
             if bids[name] <= hold:
                 break
-            before = asked if asked is not None and asked.name == name and asked.still(own, intent) else None
-            if before is not None and before.onward is None:
-                continue
+            before = asked if again and asked is not None and asked.name == name else None
             try:
                 entered = self.parts[name].seek(own, intent, None if before is None else before.onward)
             except Unable as reason:

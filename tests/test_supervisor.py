@@ -208,9 +208,13 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     """Held on, by one who stands and by one who runs: once a stance at most."""
     from gambol.controllers.contract import Unable
     from gambol.controllers.supervisor import Asked
-    calls = []
+    calls, bids = [], []
 
     class Never(Jump):
+        def precondition(self, state, intent):
+            bids.append(state)
+            return super().precondition(state, intent)
+
         def seek(self, state, intent, onward=None):
             calls.append(state)
             raise Unable("not from here")
@@ -218,7 +222,7 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     state, leap = person.start(), Leap(np.array([0.0, 0.0, 9.0]))
     for _ in range(30):
         state, _ = person.step(state, Intent(leap=leap), 1 / 60)
-    assert len(calls) == 1 and state.refused == "not from here" and isinstance(state.memory.asked, Asked)
+    assert len(calls) == len(bids) == 1 and state.refused == "not from here" and isinstance(state.memory.asked, Asked)
     state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0]))), 1 / 60)
     assert len(calls) == 2, "another place"
     state, _ = person.step(state, Intent(), 1 / 60)

@@ -3,11 +3,11 @@ flight, landing, and take-offs from a run. A jump is planned whole, then played;
 """
 
 from .body import GRAVITY, Physique, mass_of
-from .controller import Jump, Jumping
+from .controller import Jump
 from .crouching import Crouching
 from .motion import LIKE
 from .reach import BESIDE, HARD, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Pieces, Refused, Spread
-from .starting import FRESH, RUNNING, SLOWLY, goes, leaves_under, start_of, stands, stayed, walks_to
+from .starting import FRESH, RUNNING, SLOWLY, Jumping, goes, leaves_under, start_of, stands, stayed, walks_to
 from .warm_up import rehearse
 
 __all__ = [

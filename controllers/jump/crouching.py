@@ -41,7 +41,7 @@ class Crouching:
     the pelvis's first. planted: (2, 5) where its feet come to stand. place, rate, bend: (14,) where the centre of mass is [m] and how the body
     is carried [rad], and their first and second derivatives. goal: (14,) where they shall be. leap: for what it crouches, None as it
     stands up. refused: why the jump that was asked can't be made, asked: which one that was, onward: with what that is gone on with being found out.
-    stood: (4,) where it was left, see `starting.stands`. shown: what its legs differed by as it began, None for nothing.
+    stood: (4,) where it was left, see `starting.jumping.stands`. shown: what its legs differed by as it began, None for nothing.
     """
 
     start: Start

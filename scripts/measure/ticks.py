@@ -1,5 +1,5 @@
 """Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls; a script's, of
-who walks or runs and is told to leap to a place aside; hands that hold a leap as they run at gaps, boxes and hurdles.
+who walks or runs and is told to leap to a place aside; a leap that is asked for in every step and refused; hands that hold a leap as they run at gaps, boxes and hurdles.
 
     python scripts/measure/ticks.py [--clicks 40] [--only scripts]
 
@@ -22,7 +22,7 @@ import numpy as np
 from _struck_rooms import room
 from run_ups import RUNNING, running_stage
 
-from gambol.controllers.contract import Goal, Intent, Strike
+from gambol.controllers.contract import Goal, Intent, Leap, Strike
 from gambol.controllers.navigation import in_world
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, Script, Wish
@@ -111,6 +111,15 @@ def aside(count: int, seed: int) -> Iterator[None]:
             yield
 
 
+def never(speed: float, things: tuple[Box, ...], far: float) -> Iterator[None]:
+    """The steps of somebody who goes so fast [m/s], and is asked in each of them to leap to a place so far ahead of where he began [m], which nobody can; none for 0."""
+    who = person()
+    state, leap = who.start(), Leap(np.array([0.3, 0.0, far])) if far else None
+    for number in range(10 * RATE):
+        state, _ = who.step(state, Intent(np.array([speed, 0.0, 0.0]), leap=leap if number > 2 * RATE else None, around=things), 1 / RATE)
+        yield
+
+
 def held(kind: str, count: int, seed: int) -> Iterator[None]:
     """The ticks of a game in which hands run at a gap, a box or a hurdle and hold a leap from so far ahead until it goes off."""
     who = person()
@@ -140,7 +149,9 @@ def main() -> None:
     gc.collect()
     gc.freeze()  # as the game does: to look for garbage among all that is loaded takes 60 to 80 ms
     lines = {"go_across": scenario("go_across"), "clicks on the course": clicks(asked.clicks, 0), "goals among twelve boxes": imported(asked.clicks, 0), "struck on stairs": strikes(asked.clicks, 0),
-             "scripts' leaps aside": aside(asked.clicks, 0), **{f"a leap held at a run, {kind}": held(kind, max(asked.clicks // 2, 1), 0) for kind in RUNNING}}
+             "scripts' leaps aside": aside(asked.clicks, 0),
+             **{f"{'walks' if speed < 2.0 else 'runs'} {'beside boxes' if things else 'in the open'}, {'a leap refused' if far else 'alone'}": never(speed, things, far)
+                for speed in (1.3, 3.0) for things in ((), AMONG) for far in (0.0, 60.0)}, **{f"a leap held at a run, {kind}": held(kind, max(asked.clicks // 2, 1), 0) for kind in RUNNING}}
     for name, ticks in lines.items():
         if name.startswith(asked.only):
             told(name, ticks)

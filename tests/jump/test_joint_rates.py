@@ -13,7 +13,7 @@ from gambol.controllers.jump import Jump
 from gambol.controllers.jump.body import Physique, airtime_up, nearest_kernel, turns
 from gambol.controllers.jump.body.dynamics import place_kernel
 from gambol.controllers.jump.body.planted_pose import ankle_kernel, foot_kernel, leg_kernel
-from gambol.controllers.jump.motion.path_estimate import SOFT, softened
+from gambol.controllers.jump.motion.rounds import SOFT, softened
 
 BODY = Physique().tables
 ROUND = [(far * np.sin(way), up, far * np.cos(way)) for way in np.radians([0, 50, 90, 140, 180, -75]) for far, up in ((0.3, 0.0), (0.9, 0.0), (0.8, -0.5))]

@@ -46,7 +46,7 @@ def test_beyond_what_was_recorded_it_is_as_at_its_rim(speed, far, pace, size):
     knees, elbows = keys[:, [LEGS + 1, LEGS + 4]], keys[:, [6, 10]]
     assert knees.min() > 0.0 and knees.max() < 2.6 and elbows.min() > 0.0 and elbows.max() < 2.4
     assert np.abs(keys[:, :2]).max() < 1.4
-    assert 0.05 < PRIOR.crouch(features) < 0.5
+    assert 0.05 < features @ PRIOR.depth < 0.5
 
 
 def test_lines_through_keys_and_slopes_over_features_are_found_again():

@@ -8,7 +8,10 @@ import pytest
 
 from gambol.controllers.contract import Intent, Leap
 from gambol.controllers.jump import Refused
+from gambol.controllers.jump.reach import whole
 from gambol.game.scene import Box
+
+from conftest import ahead
 
 grounded = import_module("gambol.controllers.jump.motion.grounded")
 
@@ -112,3 +115,34 @@ def test_who_is_held_down_by_a_wall_is_not_told_that_his_body_can_not(jump, stan
     assert jump.plan(standing, Intent(leap=leap)).path.airtime == pytest.approx(0.52, abs=0.01)
     with pytest.raises(Refused, match=r"would hit something.*could be made in 0\.\d\d s"):
         jump.plan(standing, Intent(leap=leap, around=(wall,)))
+
+
+def test_what_legs_fall_far_short_of_is_not_looked_at_on_the_ground(jump, standing, running, courses):
+    """An estimated path tells as much; what they nearly give is looked at."""
+    for state, far in ((standing, 4.5), (running, 40.0)):
+        why = jump.refusal(state, Intent(leap=Leap(ahead(state, far))))
+        assert why and not courses
+    assert jump.refusal(running, Intent(leap=Leap(ahead(running, 2.0)))) == "" and courses
+
+
+def test_who_runs_on_is_told_no_place_by_his_foot_of_now(jump, running):
+    """He is elsewhere when it is known; who asks for a whole plan is told."""
+    intent = Intent(leap=Leap(ahead(running, 40.0)))
+    with pytest.raises(Refused) as told:
+        jump.seek(running, intent)
+    assert told.value.onward is None and told.value.nearest is None
+    with pytest.raises(Refused) as told:
+        jump.plan(running, intent)
+    assert told.value.nearest is not None
+
+
+def test_no_place_is_sought_farther_away_than_it_is_of_use(jump, running, courses):
+    start, floor = jump.placed(running)
+    place = jump.middle(start, floor) + 30.0 * np.array([np.sin(running.ground[2]), 0.0, np.cos(running.ground[2])])
+    assert whole(jump.nearby(start, place, floor, None, (), 0.3)) == (None, None)
+    few = len(courses)
+    nearest, found = whole(jump.nearby(start, place, floor, None, ()))
+    assert nearest is not None and found is not None and len(courses) > 2 * few
+    near = nearest + 0.2 * (place - nearest) / np.linalg.norm(place - nearest)
+    again, _ = whole(jump.nearby(start, near, floor, None, (), 0.3))
+    assert again is not None and np.linalg.norm(again - near) <= 0.3

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import kernel
 from .dynamics import GRAVITY
 
 
@@ -36,7 +37,7 @@ def least_effort(start, end, velocity=(0.0, 0.0, 0.0), gravity=GRAVITY) -> float
     d, g, v = np.asarray(end, float) - start, np.asarray(gravity, float), np.asarray(velocity, float)
     along_g, along_v, square = float(g @ v), float(d @ v), float(d @ d)
     if along_g == 0.0:  # one positive root
-        return _airtime(float(g @ g), along_v, square)
+        return airtime_kernel(float(g @ g), along_v, square)
     roots = np.roots([float(0.25 * g @ g), 0.5 * along_g, 0.0, along_v, -square])
     real = roots[(np.abs(roots.imag) < 1e-7 * (1.0 + np.abs(roots))) & (roots.real > 1e-9)].real
     if not len(real):
@@ -45,7 +46,8 @@ def least_effort(start, end, velocity=(0.0, 0.0, 0.0), gravity=GRAVITY) -> float
     return float(real[int(np.argmin(effort))])
 
 
-def _airtime(g: float, v: float, d: float) -> float:
+@kernel
+def airtime_kernel(g, v, d):
     """The positive root of ¼ g t⁴ + v t − d, by Newton's method from beyond it: from there on the quartic is convex."""
     t = max((4.0 * d / g) ** 0.25, (4.0 * abs(v) / g) ** (1.0 / 3.0)) * 2.0 ** (1.0 / 3.0)
     for _ in range(60):

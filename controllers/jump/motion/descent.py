@@ -53,15 +53,29 @@ def sinking(way: Path, start: Start, times: np.ndarray) -> tuple[np.ndarray, np.
 def joined(start, velocity, acceleration, end, end_velocity, end_acceleration, times, t):
     """Place, velocity, acceleration (N, 3) at times (N,) along the quintic with these ends at 0 and t [s], or, without a
     first acceleration, the quartic."""
-    powers = np.arange(3, 6) if acceleration is not None else np.arange(2, 5)
-    begins = np.zeros(3) if acceleration is None else acceleration
-    ends = np.stack([t**powers, powers * t ** (powers - 1.0), powers * (powers - 1.0) * t ** (powers - 2.0)])
-    c = np.linalg.solve(ends, np.stack([
-        end - start - velocity * t - 0.5 * begins * t**2, end_velocity - velocity - begins * t, end_acceleration - begins]))
-    s = times[:, None]
-    return (start + velocity * s + 0.5 * begins * s**2 + s**powers @ c,
-            velocity + begins * s + (powers * s ** (powers - 1.0)) @ c,
-            begins + (powers * (powers - 1.0) * s ** (powers - 2.0)) @ c)
+    place, speed, gain = np.empty((3, len(times), 3))
+    still = acceleration is None
+    joined_kernel(start, velocity, np.zeros(3) if acceleration is None else acceleration, still, end, end_velocity, end_acceleration, times, float(t), place, speed, gain)
+    return place, speed, gain
+
+
+@kernel
+def joined_kernel(start, velocity, acceleration, quartic, end, end_velocity, end_acceleration, times, t, place, speed, gain):
+    """Write `joined`'s place, velocity and acceleration (N, 3). quartic: whether its first acceleration is left open."""
+    low = 2 if quartic else 3
+    for i in range(3):
+        v, a = velocity[i], 0.0 if quartic else acceleration[i]
+        d, e, f = end[i] - start[i] - v * t - 0.5 * a * t**2, (end_velocity[i] - v - a * t) * t, (end_acceleration[i] - a) * t**2
+        if quartic:
+            first, second, third = 6.0 * d - 3.0 * e + 0.5 * f, 5.0 * e - 8.0 * d - f, 3.0 * d - 2.0 * e + 0.5 * f
+        else:
+            first, second, third = 10.0 * d - 4.0 * e + 0.5 * f, 7.0 * e - 15.0 * d - f, 6.0 * d - 3.0 * e + 0.5 * f
+        for n in range(len(times)):
+            s = times[n] / t
+            lower = s ** (low - 2)
+            place[n, i] = start[i] + v * times[n] + 0.5 * a * times[n]**2 + lower * s**2 * (first + s * (second + s * third))
+            speed[n, i] = v + a * times[n] + lower * s * (low * first + s * ((low + 1) * second + s * (low + 2) * third)) / t
+            gain[n, i] = a + lower * (low * (low - 1) * first + s * ((low + 1) * low * second + s * (low + 2) * (low + 1) * third)) / t**2
 
 
 @kernel

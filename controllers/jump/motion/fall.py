@@ -20,7 +20,8 @@ from ..prior import Prior
 from .capsules import capsule_places, near
 from .falling import LATE, REACHES, Falling
 from .hit import Hit, out_of
-from .path_estimate import Path, softened
+from .path_estimate import Path
+from .rounds import softened
 from .plan import Plan
 from .rolling import rolled, rolls, room
 

@@ -67,23 +67,42 @@ def heels_rise(start: Start, planted: np.ndarray, centres: np.ndarray, share: np
 def heels_up(start: Start, planted: np.ndarray, leave: np.ndarray, pushes: float, body: BodyTables) -> float:
     """How far feet (2, 5) point down [rad] as they leave the floor under a mass at leave (3,) [m], after a push of so long [s]: no farther than brings ankles
     nearer to the hips, as it would backward, nor than a runner's comes to."""
-    if start.haste > 1:
-        return RUNNERS_HEEL[1] if start.runs else start.heel_up
     if start.runs:
-        return RUNNERS_HEEL[1] * min((1.0 - RUNNERS_HEEL[0]) * pushes / RUNS_FOR, 1.0)
-    hips, foot = leave - [0.0, HIPS * body.size, 0.0], start.pushing(planted).mean(0)
-    return min(start.heel_up * min(pushes / SHORT_PUSH, 1.0), max(NEARER * float(nearest_kernel(body, hips, foot)), LEAST_UP))
+        return RUNNERS_HEEL[1] * (1.0 if start.haste > 1 else min((1.0 - RUNNERS_HEEL[0]) * pushes / RUNS_FOR, 1.0))
+    return standing_heels_kernel(body, start.pushing(planted).mean(0), leave, pushes, start.haste, start.heel_up)
+
+
+@kernel
+def standing_heels_kernel(body, foot, leave, pushes, haste, heel_up):
+    """See `heels_up`, of who is no runner; foot: (5,) in the middle of those that push."""
+    if haste > 1:
+        return heel_up
+    hips = leave.copy()
+    hips[1] -= HIPS * body.size
+    return min(heel_up * min(pushes / SHORT_PUSH, 1.0), max(NEARER * nearest_kernel(body, hips, foot), LEAST_UP))
 
 
 def heels_down(centres: np.ndarray, feet: np.ndarray, body: BodyTables, flex: np.ndarray | float) -> np.ndarray:
     """Whether heels (N, 2) of feet (N, 2, 5) can be on the floor under a mass at centres (N, 3): neither is the leg too short nor does the ankle
     bend by more than `flex` (2,) [rad]."""
-    heading = np.stack([np.sin(feet[..., 3]), np.zeros(feet.shape[:2]), np.cos(feet[..., 3])], -1)
-    leg = (centres - [0.0, HIPS * body.size, 0.0])[:, None] - feet[..., :3] + body.toe[2] * heading + [0.0, body.toe[1], 0.0]
-    long = np.linalg.norm(leg, axis=-1)
-    bent = np.clip((body.shank**2 + long**2 - body.thigh**2) / (2.0 * body.shank * long), -1.0, 1.0)
-    shank = np.arctan2((leg * heading).sum(-1), leg[..., 1]) + np.arccos(bent)
-    return (long < STRAIGHT * (body.thigh + body.shank)) & (shank < flex + RAISED)
+    down = np.empty(feet.shape[:2], bool)
+    _heels_down(np.ascontiguousarray(centres), np.ascontiguousarray(feet), body, np.broadcast_to(flex, 2).copy(), down)
+    return down
+
+
+@kernel
+def _heels_down(centres, feet, body, flex, down):
+    """Write `heels_down` (N, 2)."""
+    for n in range(len(feet)):
+        for side in range(2):
+            s, c = math.sin(feet[n, side, 3]), math.cos(feet[n, side, 3])
+            x = centres[n, 0] - feet[n, side, 0] + body.toe[2] * s
+            y = centres[n, 1] - HIPS * body.size - feet[n, side, 1] + body.toe[1]
+            z = centres[n, 2] - feet[n, side, 2] + body.toe[2] * c
+            long = math.sqrt(x * x + y * y + z * z)
+            bent = min(max((body.shank**2 + long**2 - body.thigh**2) / (2.0 * body.shank * long), -1.0), 1.0)
+            shank = math.atan2(x * s + z * c, y) + math.acos(bent)
+            down[n, side] = long < STRAIGHT * (body.thigh + body.shank) and shank < flex[side] + RAISED
 
 
 def standing_soles(feet: np.ndarray, low: float, flat: np.ndarray, single: int | None, body: BodyTables) -> tuple[np.ndarray, np.ndarray]:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...body import HALF_SOLE, yaw
+from ...compiled import kernel
 from ..body import FLAT, Physique, Start, carriage
 from ..prior import EACH, LEGS, ROWS
 
@@ -88,23 +89,28 @@ def carried(physique: Physique, start: Start, goes: np.ndarray, floor: float, gr
     return Carried(velocity, place, float(np.linalg.norm(velocity - goes)) / pace, keeps)
 
 
-def sent(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, flies: np.ndarray | float, longer: np.ndarray | float = 1.0,
-         centre: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """How fast (..., 3) [m/s] somebody leaves the foot that stands, and where (..., 3) [m], along the floor, who is to leave as near to so fast (..., 3) as it can, and flies so long (...) [s]. longer: (...)
-    by what his push takes longer than usual. centre: (..., 3) [m] of his mass, where that is not the start's."""
+def sent(physique: Physique, start: Start, goes: np.ndarray, floor: float, gravity: float, flies: float) -> tuple[np.ndarray, np.ndarray]:
+    """How fast (3,) [m/s] somebody leaves the foot that stands, and where (3,) [m], along the floor, who is to leave as near to so fast (3,) as it can, and flies so long [s]."""
     assert start.single is not None
-    body, size = physique.tables, physique.size
-    centre = start.centre if centre is None else centre
-    pushes = np.asarray(longer * PUSHES * math.sqrt(size * 9.81 / gravity))
-    foot = start.planted(floor, body)[start.single]
-    ball, turned = foot[:3] * FLAT, yaw(foot[3])
-    rate = np.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / np.maximum(centre[..., 1] - floor, 0.3 * size))[..., None]
-    cosh, sinh = np.cosh(rate * pushes[..., None]), np.sinh(rate * pushes[..., None])
-    here, speed = centre * FLAT, start.velocity * FLAT
-    wide = WITHIN[0] * HALF_SOLE * size
-    pressed = np.clip((here + (speed * cosh - goes) / (rate * sinh) - ball) @ turned, [-wide, 0.0, -WITHIN[1] * size], [wide, 0.0, body.tip[2] - WITHIN[2] * size])
-    pressed = ball + pressed @ turned.T
-    return (here - pressed) * rate * sinh + speed * cosh, pressed + (here - pressed) * cosh + speed * sinh / rate
+    foot, out = start.planted(floor, physique.tables)[start.single], np.empty(4)
+    sent_kernel(physique.size, physique.tables.tip, start.centre, start.velocity, foot, goes, floor, gravity, flies, 1.0, out)
+    return np.array([out[0], 0.0, out[1]]), np.array([out[2], 0.0, out[3]])
+
+
+@kernel
+def sent_kernel(size, tip, centre, velocity, foot, goes, floor, gravity, flies, longer, out):
+    """Write `sent` (4,): how fast, x and z, and where. tip: (3,) as in `BodyTables`. centre, velocity: (3,) of his mass. foot: (5,) that stands. longer: by what his push takes longer than usual."""
+    pushes = longer * PUSHES * math.sqrt(size * 9.81 / gravity)
+    rate = math.sqrt(gravity * (1.0 + 0.5 * flies / pushes) / max(centre[1] - floor, 0.3 * size))
+    cosh, sinh = math.cosh(rate * pushes), math.sinh(rate * pushes)
+    wide, s, c = WITHIN[0] * HALF_SOLE * size, math.sin(foot[3]), math.cos(foot[3])
+    x = centre[0] + (velocity[0] * cosh - goes[0]) / (rate * sinh) - foot[0]
+    z = centre[2] + (velocity[2] * cosh - goes[2]) / (rate * sinh) - foot[2]
+    aside = min(max(x * c - z * s, -wide), wide)
+    ahead = min(max(x * s + z * c, -WITHIN[1] * size), tip[2] - WITHIN[2] * size)
+    for k, pressed in ((0, foot[0] + aside * c + ahead * s), (1, foot[2] - aside * s + ahead * c)):
+        here, speed = centre[2 * k] - pressed, velocity[2 * k]
+        out[k], out[2 + k] = here * rate * sinh + speed * cosh, pressed + here * cosh + speed * sinh / rate
 
 
 def airtime(velocity: np.ndarray, size: float) -> float:

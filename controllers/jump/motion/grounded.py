@@ -13,8 +13,9 @@ from ..prior import BETWEEN, LEGS
 from .centroidal import course_kernel
 from .descent import descent, sinking
 from .footing import heels_down, heels_rise, settling, standing_soles
+from .off_one_foot import STRIDE
 from .path_estimate import Course, Path
-from .take_off import STRIDE, top
+from .take_off import top
 from .thrust import push
 
 KNOTS = 41
@@ -79,7 +80,8 @@ def _course(physique: Physique, start: Start, way: Path, planted: np.ndarray, fl
     force = np.concatenate([bent[:, 1] - way.gravity[1], way.push.force(pushing)[:, 1]])
     times, (guess, place) = half[::2], _guess(start, way, floor)
     share = np.clip((times - way.wind_up) / way.push.duration, 0.0, 1.0)
-    centres = np.insert(place if before is None else before.place, 1, height[::2], axis=1)
+    centres = np.empty((KNOTS, 3))
+    centres[:, [0, 2]], centres[:, 1] = place if before is None else before.place, height[::2]
     height -= floor + start.levels.mean()
     feet = settling(start, planted, physique.tables, times, way.wind_up, way.push.duration)
     flat = np.ones(feet.shape[:2], bool)

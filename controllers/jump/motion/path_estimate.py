@@ -11,25 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...body import yaw
-from ..body import (FLAT, TOUCH_REACH, TRAIL, BodyTables, Physique, Start, apex_airtime, carriage, carried, hermite, least_effort, measures, monotone, soles,
-                    take_off_velocity, TURNED)
-from ..prior import BETWEEN, EACH, LEGS, ROWS, Prior
+from ..body import FLAT, TRAIL, TURNED, Physique, Start, carriage, hermite, measures, monotone, soles, take_off_velocity, uphill
+from ..muscles import strength
+from ..prior import BETWEEN, COLUMNS, EACH, FEATURES, LEGS, ROWS, Prior, mirrored
+from .bound import flies_between
+from .going_slowly import airtime as skips, beside, calm, skipping
 from .hopping import hopping
-from .bound import flies
-from .going_slowly import airtime as skips, beside, calm
-from .take_off import Running, Standing
+from .rounds import Carriage, Found, Leap, Legs, rounds_kernel
+from .take_off import TakesOff
 from .thrust import Push, push
 
 SQUAT, DEEPEST_SQUAT = 0.6, 0.30
 """How much lower [m] a body lands for each metre that it jumps up, and at most, at standard height."""
-SOFT = 0.85, 15.5, 0.07
-"""Whoever comes down faster along his legs touches down with knees bent more, so that they need not fly: legs are shortened by the first, as a share of that speed, and
-knees turn no faster for that than the second [rad/s]; but no lower than by the third [m], at standard height."""
 BACKWARD, BELOW = 0.4, 0.4
 """Feet that come down behind the body, lower by the second [m], at standard height, or more, reach less far by this share: there ankles can't bend so that knees give
 softly. Not of who needs all of his reach, and leaves in haste."""
-TILTED, HARD = 0.7, (4.4, 5.4)
-"""A runner, who passes over his feet as legs give, lands lower by so much of that, and so does who falls faster [m/s], by and by, and needs his legs to stop."""
 LEAST_AIRTIME, RUNS_UP = 0.30, 0.42
 """Shorter flights look like stumbling [s], and off one foot of who walks or runs like a long step: recorded ones take 0.44 to 0.60; on Earth, at standard height."""
 TURN_SETTLES = 0.25
@@ -47,18 +43,11 @@ STRIDES, FALLS, ASTRAY = (0.5, 1.8, 2.3), 3.7, 0.45
 that [m/s], from 0.7 m: a leg then bears 4.8 times the weight. But not if he goes aside by more than that share of it: no gait does, as fast."""
 FOLDS = np.array([[-0.1, 0.17], [-0.2, 0.34], [-0.3, 0.5]])
 """By so much more than recorded hip and knee of a free leg are bent [rad] as the other lands, and in the rows before."""
-FOLDED = 0.64
-"""How low a body touches down at most, as a share of how high it stands."""
 TUCK, TUCKS, TUCK_TIME = (-1.5, 1.9), np.array([0.35, 0.9, 1.0, 0.7]), 0.45
 """How far hips and knees are bent [rad] of legs that are drawn up over something, by which share of the way at each row of the flight, and
 how long a flight needs for all of it [s]."""
-ON_ONE = 0.06
-"""So much higher a body comes down that hops onto one foot [m], at standard height: on a straighter leg, the other held up."""
 LEAST_PUSH = 0.01
 """A push that rises less [m], at standard height, is none."""
-ROUNDS, SETTLED, LEAST_STEP = 12, 1e-3, 0.2
-"""Where a body leaves and how fast follow from each other: they are found in so many rounds at most, to so much [m], by such
-a share at least of what the last round found."""
 
 
 class Course(NamedTuple):
@@ -157,42 +146,25 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     keeps, dear = KEEPS if start.runs and not start.haste and np.linalg.norm(start.velocity * FLAT) > STRIDES[0] * np.sqrt(size) else (float(start.single is not None), 1.0)
     stretched = np.array([dear, 1.0, dear])
     behind = 0.0 if start.haste else BACKWARD * max(-along, 0.0) * min(max((floor - float(goal[1])) / (BELOW * size), 0.0), 1.0)
-    fall, lacks, relaxed = 0.0, None, 0.5  # half the way: the whole one may swing about
-    heights, crouch, passing = upright, 0.0, start.velocity * FLAT
-    for _ in range(ROUNDS):
-        leave, trail, soft = guess[:3], guess[3], guess[4]
-        tilted = TILTED if start.runs else float(np.interp(fall, HARD, (1.0, TILTED)))
-        height = max(min(heights.touch(trail * along, trail * (float(abs(lays @ yaw(start.lands)[:, 0])) if start.along else across)) - tilted * soft, heights.touch(0.0) - max(squat, soft)), FOLDED * heights.stand) + (ON_ONE * size if start.onto in (0, 1) else 0.0)
-        land = goal * FLAT - trail * lays + [0.0, goal[1] + height, 0.0]
-        flight = float(airtime) if airtime is not None else float(flies(float(np.linalg.norm((land - leave) * FLAT)), float(land[1] - leave[1]), start.velocity, size, g)) if start.bound else max(
-            least_effort(stretched * leave, stretched * land, keeps * stretched * start.velocity * FLAT, gravity),
-            ((skips(start.velocity, size) if start.along else RUNS_UP if start.runs else LEAST_AIRTIME) + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * np.sqrt(9.81 / g * size), apex_airtime(leave, land, max(land[1] - leave[1], 0.0) + 0.04 * size, gravity), least)
-        velocity = take_off_velocity(leave, land, flight, gravity)
-        fall = g * flight - float(velocity[1])
-        features = [prior.features(speed, ahead, pace, size, start.runs)
-                    for speed in (float(velocity[1]), fall)]
-        swings = prior.swings(flight * np.sqrt(g / 9.81), pace, size, start.runs)
-        angles = [_low(calm(prior.row(number * BETWEEN, some, runner, swings), start, number * BETWEEN, size), low_arms)[:LEGS] for number, some in zip((2, 3), features)]
-        heights = upright.of(*(carried(physique, some) for some in angles))
-        if not start.runs:
-            # who waits needs no more than the muscles do, and pushes from as deep as it is
-            crouch = upright.stand + floor - float(start.centre[1] if start.low is None else start.low) if start.ready else size * prior.crouch(features[0])
-            pushing = Standing(physique, start, heights, middle, balls, reach, floor, gravity, feet if len(feet) == 2 else feet[[0, 0]], angles[0], crouch, passing)
-        else:
-            pushing = Running(physique, start, heights, balls, floor, gravity)
-        found = pushing.take_off(leave, land, velocity, flight)
-        passing = found.passing
-        given = fall if start.runs else _given(velocity + flight * gravity, trail * towards, height)
-        before, lacks = lacks, np.array([
-            *found.leave, (1.0 - behind) * min(TRAIL[2 if start.single is None and start.onto is None else 1] * size, max(TRAIL[0] * float(velocity @ towards), 0.0)),
-            softened(given, body)]) - guess
-        if np.abs(lacks).max() < SETTLED:
-            break
-        if before is not None:  # Aitken's relaxation
-            change = lacks - before
-            relaxed = min(max(-relaxed * (before @ change) / max(change @ change, 1e-12), LEAST_STEP), 1.0)
-        guess = guess + relaxed * lacks
-    low, leave, passing, wind_up, dip, strong, pressed = found
+    fitted, joints = prior.two if not start.runs else prior.one, carriage.joints_of(physique.skeleton)
+    rows = np.array([2 * BETWEEN, 3 * BETWEEN])
+    shift = calm(np.zeros((2, COLUMNS)), start, rows, size)  # which is linear
+    slow = skips(start.velocity, size) if start.along else RUNS_UP if start.runs else LEAST_AIRTIME
+    legs = Legs(upright.stand, upright.leads, upright.leaves, upright.trails, upright.touches, upright.carried)
+    one = int(start.runs)
+    left, down, swung = (part if runner != 0 else mirrored(part) for part in (fitted[:, rows[0]], fitted[:, rows[1]], prior.unswung(rows[1], start.runs)))
+    carry = Carriage(left, down, swung, calm(np.ones((2, COLUMNS)), start, rows, size) - shift, shift, prior.depth, prior.least[one], prior.most[one], ahead, pace, low_arms)
+    leap = Leap(goal, towards, lays, along, float(abs(lays @ yaw(start.lands)[:, 0])) if start.along else across, np.nan if airtime is None else float(airtime),
+                max((slow + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * float(np.sqrt(9.81 / g * size)), least), flies_between(start.velocity, size, g), keeps * stretched * start.velocity * FLAT,
+                stretched, squat, upright.stand + floor - float(start.centre[1] if start.low is None else start.low) if start.ready else np.nan, behind,
+                TRAIL[2 if start.single is None and start.onto is None else 1] * size, start.runs, start.onto in (0, 1))
+    pushing = feet if len(feet) == 2 else feet[[0, 0]]
+    off = TakesOff(size, gravity, float(floor), upright.stand, upright.leads, middle, balls, pushing, reach, float(uphill(pushing, start.slope).mean()), start.centre, start.velocity, start.heading, start.leaves,
+                   np.nan if start.low is None else float(start.low), start.straight, start.heel_up, start.haste, start.ready, start.springs, start.single is not None, start.along, start.bound, skipping(start, size))
+    found = Found(np.empty((5, 3)), np.empty((2, FEATURES)))
+    flight, wind_up, dip, strong, swings = rounds_kernel(body, joints, strength(physique, gravity=g), legs, carry, leap, off, guess, found)
+    low, leave, passing, pressed, land = found.ends
+    features = found.features
     velocity = take_off_velocity(leave, land, flight, gravity)  # from where it leaves in the end
     keys = _tuck(_low(calm(prior.keys(features[0], features[1], runner, swings), start, np.arange(ROWS), size), low_arms), flight, tucked)
     if start.onto is None and not start.springs:
@@ -204,7 +176,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     if start.ready:  # it has gone down already
         keys[:BETWEEN] = keys[BETWEEN]
     rises = leave[1] - low[1] > LEAST_PUSH * size
-    return Path(low, leave, land, passing, velocity, float(flight), float(wind_up), gravity,
+    return Path(low, leave, land, passing, velocity, flight, wind_up, gravity,
                 push(leave - low, passing, velocity, gravity, start.springs) if rises else None, middle, pressed, dip, strong, far, float(goal[1]) - floor,
                 start.heading, start.runs, start.single is not None, low_arms, lands, start.onto is not None, keys, turn)
 
@@ -248,19 +220,3 @@ def _tuck(keys: np.ndarray, flight: float, tucked: bool) -> np.ndarray:
             keys[rows, hip] += share * np.minimum(TUCK[0] - keys[rows, hip], 0.0)
             keys[rows, hip + 1] += share * np.maximum(TUCK[1] - keys[rows, hip + 1], 0.0)
     return keys
-
-
-def _given(velocity: np.ndarray, ahead: np.ndarray, height: float) -> float:
-    """How fast [m/s] a velocity (3,) shortens legs whose feet are ahead (3,) [m] along the floor of a centre of mass so high [m] over them."""
-    leg = ahead - [0.0, height, 0.0]
-    return float(velocity @ leg / np.linalg.norm(leg))
-
-
-def softened(fall: float, body: BodyTables) -> float:
-    """How much lower [m] a body touches down that comes down along its legs with `fall` [m/s], see SOFT.
-
-    A leg of two bones of length a whose knee is bent by θ gets shorter by a sin θ/2 for each radian.
-    """
-    bone = 0.5 * (body.thigh + body.shank)
-    sine = min(max(SOFT[0] * fall / (SOFT[1] * bone), 0.0), 1.0)
-    return float(np.clip(2.0 * bone * (TOUCH_REACH - np.sqrt(1.0 - sine**2)), 0.0, SOFT[2] * body.size))

@@ -9,16 +9,18 @@ the friction it needs. A and T follow from the way up and the speed upward, lean
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...compiled import kernel
+
 LEVEL, SPRING = np.array([1.0, 0.3, 0.0, 0.0, -1.3]), np.array([1.0, 0.0, -1.2337, 0.0, 0.2337])
 """φ as a polynomial, by rising powers of s: from a crouch, and off a springy landing."""
 _POWERS = np.arange(len(LEVEL))
-_UP = np.array([0.0, 1.0, 0.0])
 
 
 @lru_cache(2)
@@ -29,8 +31,8 @@ def moments(springs: bool = False) -> tuple[float, float, float]:
     return m0, m1, m2
 
 
-MOMENTS = moments()
-"""Those of a push from a crouch."""
+MOMENTS, SPRINGY = moments(), moments(True)
+"""Those of a push from a crouch, and off a springy landing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,20 +54,45 @@ class Push:
 
     def force(self, time: ArrayLike) -> np.ndarray:
         """Ground force over mass (..., 3) [m/s²] `time` (...) [s] after the lowest point."""
-        s = np.clip(np.asarray(time, float) / self.duration, 0.0, 1.0)[..., None]
-        return self.level * (s**_POWERS @ self.shape)[..., None] * (_UP + self.lean + self.turn * s)
+        times = np.asarray(time, float)
+        out = np.empty((*times.shape, 3))
+        _force(np.ravel(times), self.duration, self.level, self.lean, self.turn, self.shape, out.reshape(-1, 3))
+        return out
 
     def moved(self, time: ArrayLike, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Way (..., 3) [m] and velocity [m/s] since the lowest point, passed with `velocity` (3,)."""
-        t, n, c = np.asarray(time, float)[..., None], _POWERS, self.shape
-        s = t / self.duration
-        rows = s**n
-        level, turn = self.level * (_UP + self.lean), self.level * self.turn
-        # ∫ φ, ∫ s φ, and both once more
-        speed = self.duration * (level * (s * (rows @ (c / (n + 1)))[..., None]) + turn * (s**2 * (rows @ (c / (n + 2)))[..., None]))
-        way = self.duration**2 * (level * (s**2 * (rows @ (c / ((n + 1) * (n + 2))))[..., None])
-                                  + turn * (s**3 * (rows @ (c / ((n + 2) * (n + 3))))[..., None]))
-        return velocity * t + 0.5 * self.gravity * t**2 + way, velocity + self.gravity * t + speed
+        times = np.asarray(time, float)
+        way, speed = np.empty((2, *times.shape, 3))
+        _moved(np.ravel(times), self.duration, self.level, self.lean, self.turn, self.gravity, self.shape, velocity, way.reshape(-1, 3), speed.reshape(-1, 3))
+        return way, speed
+
+
+@kernel
+def _force(times, duration, level, lean, turn, shape, out):
+    """Write the forces (N, 3) of a push at times (N,) [s]."""
+    for n in range(len(times)):
+        s = min(max(times[n] / duration, 0.0), 1.0)
+        strength = level * (shape[0] + s * (shape[1] + s * (shape[2] + s * (shape[3] + s * shape[4]))))
+        for i in range(3):
+            out[n, i] = strength * ((1.0 if i == 1 else 0.0) + lean[i] + turn[i] * s)
+
+
+@kernel
+def _moved(times, duration, level, lean, turn, gravity, shape, velocity, way, speed):
+    """Write ways and velocities (N, 3) of a push at times (N,) [s]."""
+    for n in range(len(times)):
+        t = times[n]
+        s, power = t / duration, 1.0
+        first, twice, later, more = 0.0, 0.0, 0.0, 0.0  # ∫ φ, ∫ s φ, and both once more
+        for k in range(len(shape)):
+            part = shape[k] * power
+            first, later = first + part / (k + 1), later + part / (k + 2)
+            twice, more = twice + part / ((k + 1) * (k + 2)), more + part / ((k + 2) * (k + 3))
+            power *= s
+        for i in range(3):
+            leans = level * ((1.0 if i == 1 else 0.0) + lean[i])
+            speed[n, i] = velocity[i] + gravity[i] * t + duration * (leans * s * first + level * turn[i] * s**2 * later)
+            way[n, i] = velocity[i] * t + 0.5 * gravity[i] * t**2 + duration**2 * (leans * s**2 * twice + level * turn[i] * s**3 * more)
 
 
 def upward(rise: float, before: float, after: float, gravity: float, springs: bool = False) -> tuple[float, float]:
@@ -76,14 +103,19 @@ def upward(rise: float, before: float, after: float, gravity: float, springs: bo
     """
     if not rise > 0.0:
         raise ValueError("a push needs room to rise")
-    gives, m1, _ = moments(springs)
+    return upward_kernel(float(rise), float(before), float(after), float(gravity), springs)
+
+
+@kernel
+def upward_kernel(rise, before, after, gravity, springs):
+    """See `upward`, for who has something to rise along."""
+    gives, m1, _ = SPRINGY if springs else MOMENTS
     goes = gives - m1
     # (Δv + gT) T goes = (rise − v0 T + ½ g T²) gives, from both integrals
     a = gravity * (goes - 0.5 * gives)
     b = (after - before) * goes + before * gives
-    c = -rise * gives
-    duration = -2.0 * c / (b + np.sqrt(max(b * b - 4.0 * a * c, 0.0)))
-    return float(duration), float(((after - before) / duration + gravity) / gives)
+    duration = 2.0 * rise * gives / (b + math.sqrt(max(b * b + 4.0 * a * rise * gives, 0.0)))
+    return duration, ((after - before) / duration + gravity) / gives
 
 
 def push(way: np.ndarray, before: np.ndarray, after: np.ndarray, gravity: np.ndarray, springs: bool = False) -> Push:
@@ -102,7 +134,8 @@ def push(way: np.ndarray, before: np.ndarray, after: np.ndarray, gravity: np.nda
                 (gone * m0 - gain * (m0 - m1)) / determinant, gravity, springs)
 
 
-def risen(duration: float, velocity: float, gravity: float) -> float:
+@kernel
+def risen_kernel(duration, velocity, gravity):
     """How far [m] a push of `duration` [s] from a crouch rises that leaves upward with `velocity` [m/s] from rest, under
     `gravity` [m/s²]: what `upward` inverts."""
     share = 1.0 - MOMENTS[1] / MOMENTS[0]

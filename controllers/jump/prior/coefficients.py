@@ -7,6 +7,7 @@ how far it goes and how fast it came.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from os import PathLike
@@ -16,6 +17,7 @@ import numpy as np
 
 from gambol import assets
 
+from ...compiled import kernel
 from ..body import carriage
 
 BETWEEN = 5
@@ -54,16 +56,9 @@ class Prior:
     def features(self, speed: float, far: float, pace: float, size: float, single: bool) -> np.ndarray:
         """The features (FEATURES,) of a jump that leaves or lands with `speed` upward or downward [m/s], goes `far` [m]
         ahead and comes with `pace` [m/s], of a body of a size over an adult's."""
-        found = np.array([1.0, 2.0 * speed / (9.81 * size**0.5), far / size, pace / size**0.5])
-        return np.clip(found, self.least[int(single)], self.most[int(single)])
-
-    def swings(self, airtime: float, pace: float, size: float, single: bool) -> float:
-        """How far arms swing in a jump of an airtime [s] and a pace [m/s], beside recorded ones: less in shorter and slower leaps off one foot than anybody was
-        recorded in, or they would have to be faster."""
-        if not single:
-            return 1.0
-        least = self.least[1]
-        return float(min(airtime / size**0.5 / least[1], 1.0) * np.clip(pace / size**0.5 / least[3], 0.0, 1.0))
+        found = np.empty(FEATURES)
+        features_kernel(speed, far, pace, size, self.least[int(single)], self.most[int(single)], found)
+        return found
 
     def keys(self, leaving: np.ndarray, landing: np.ndarray, single: int | None = None, swings: float = 1.0) -> np.ndarray:
         """The rows (ROWS, COLUMNS) [rad] of a jump with these features as it leaves and as it lands. single: the foot that it
@@ -76,18 +71,29 @@ class Prior:
             keys[AIR, ARMS] += (1.0 - swings) * ((1.0 - part) * keys[AIR.start, ARMS] + part * keys[AIR.stop - 1, ARMS] - keys[AIR, ARMS])
         return mirrored(keys) if single == 0 else keys
 
-    def row(self, number: int, features: np.ndarray, single: int | None = None, swings: float = 1.0) -> np.ndarray:
-        """One row (COLUMNS,) [rad] for features that hold there."""
-        fitted = self.two if single is None else self.one
-        found = features @ fitted[:, number]
-        if swings < 1.0 and AIR.start < number < AIR.stop:
-            part = (number - AIR.start) / (2 * BETWEEN)
-            found[ARMS] += (1.0 - swings) * (features @ ((1.0 - part) * fitted[:, AIR.start, ARMS] + part * fitted[:, AIR.stop - 1, ARMS]) - found[ARMS])
-        return mirrored(found) if single == 0 else found
+    def unswung(self, number: int, single: bool) -> np.ndarray:
+        """What (FEATURES, COLUMNS) [rad] is added to a row in the air for each feature where arms do not swing: so that they go straight from how they leave to how they land."""
+        fitted, part = self.one if single else self.two, (number - AIR.start) / (2 * BETWEEN)
+        more = np.zeros((FEATURES, COLUMNS))
+        more[:, ARMS] = (1.0 - part) * fitted[:, AIR.start, ARMS] + part * fitted[:, AIR.stop - 1, ARMS] - fitted[:, number, ARMS]
+        return more
 
-    def crouch(self, leaving: np.ndarray) -> float:
-        """How far down [m] an adult's mass centre goes before such a jump off both feet."""
-        return float(leaving @ self.depth)
+
+@kernel
+def features_kernel(speed, far, pace, size, least, most, found):
+    """Write `Prior.features` (FEATURES,). least, most: (FEATURES,) of what was recorded."""
+    root = math.sqrt(size)
+    found[0], found[1], found[2], found[3] = 1.0, 2.0 * speed / (9.81 * root), far / size, pace / root
+    for n in range(len(found)):
+        found[n] = min(max(found[n], least[n]), most[n])
+
+
+@kernel
+def swings_kernel(airtime, pace, size, least):
+    """How far arms swing in a leap off one foot of an airtime [s] and a pace [m/s], beside recorded ones, which had these features at least (FEATURES,): less in shorter and slower ones, or they would have
+    to be faster."""
+    root = math.sqrt(size)
+    return min(airtime / root / least[1], 1.0) * min(max(pace / root / least[3], 0.0), 1.0)
 
 
 @lru_cache(maxsize=4)

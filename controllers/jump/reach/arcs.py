@@ -14,7 +14,7 @@ from ...navigation import clearance, floor_at, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, over_ledge, path
 from ..prior import Prior
-from .feasibility import HARD, PACE, begins, fault, meant
+from .feasibility import HARD, PACE, begins, fault, hopeless, meant
 from .seeking import PATH, Pieces, whole
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
@@ -161,7 +161,9 @@ class Arcs:
     def arc(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], how: How) -> Arc:
         """One of them."""
         start = replace(start, haste=how.haste)
-        way = grounded(self.physique, start, self.path(start, place, floor, how.airtime, how.low_arms, how.tucked), floor)
+        way = self.path(start, place, floor, how.airtime, how.low_arms, how.tucked)
+        if not hopeless(self.physique, way):
+            way = grounded(self.physique, start, way, floor)
         return Arc(way, fault(self.physique, way, around, floor), how)
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,

@@ -11,7 +11,7 @@ from ...body import centre_of_mass, end_positions, forward_kinematics, yaw
 from ...contract import Unable
 from ...navigation import clearance
 from ..body import FLAT, TURNED, Physique, Start, along, measures, carriage, turns
-from ..motion import SPINS, Path, Plan, rolls
+from ..motion import SPINS, Path, Plan, Push, rolls
 from ..muscles import strongest
 from ..prior import BETWEEN, LEGS
 from .seeking import Onward
@@ -43,6 +43,8 @@ TOO_NEAR = "too near for this "
 """So begins why a leap is refused for which who goes on would have to brake too much."""
 HARD = "no leg pushes off so hard"
 """Why a leap is refused that is too high for the leg that pushes: one that flies longer asks more of it still."""
+HOPELESS = 1.5
+"""Nobody leaps along a path that is estimated to ask legs for so many times what they give: of 985 that could be leapt none was estimated to ask for all of it."""
 PACE = "too far for this ", TOO_NEAR
 """And one for which the foot that pushes would have to speed up or brake too much."""
 BESIDE_IT = 0.05
@@ -113,8 +115,7 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
         return f"too short to turn by {np.degrees(abs(way.turn)):.0f}°: that takes {least:.2f} s in the air"
     if way.push is None:
         return f"no push leaves the floor for {way.airtime:.2f} s in the air"
-    force = np.linalg.norm(way.push.force(np.linspace(0.0, way.push.duration, 24)), axis=-1).max() / 9.81
-    gives = physique.strength * (STANDER if not (way.running or way.push.springs) else RUNNER if way.single else 2.0 * RUNNER)
+    force, gives = _asked(physique, way, way.push)
     if force > gives:  # a push as short as that throws the limbs, too
         return (f"{HARD} from this {'run' if way.running else 'hop' if way.push.springs else 'pace'}: {force:.1f} times its weight on Earth, "
                 f"where {'this one has' if way.single else 'these have'} {gives:.1f}")
@@ -124,6 +125,20 @@ def fault(physique: Physique, way: Path, around: Sequence[Any], floor: float) ->
     if np.linalg.norm((way.land - way.leave)[[0, 2]]) > 1e-6 and way.airtime <= 0.0:
         return "the arc takes no time"
     return stopped(physique, way, ROLLED if rolls(physique, way) else 1.0) or blocked(physique, way, around)
+
+
+def hopeless(physique: Physique, way: Path) -> bool:
+    """Whether the muscles fall so short of an estimated path that nothing would come of finding where the ground can push."""
+    if not way.strong or way.push is None:
+        return not way.strong
+    force, gives = _asked(physique, way, way.push)
+    return force > HOPELESS * gives
+
+
+def _asked(physique: Physique, way: Path, push: Push) -> tuple[float, float]:
+    """How hard legs push at most, and how hard they can, in their body's weights on Earth."""
+    gives = physique.strength * (STANDER if not (way.running or push.springs) else RUNNER if way.single else 2.0 * RUNNER)
+    return float(np.linalg.norm(push.force(np.linspace(0.0, push.duration, 24)), axis=-1).max()) / 9.81, gives
 
 
 def stopped(physique: Physique, way: Path, share: float = 1.0) -> str:

@@ -162,8 +162,8 @@ class Reach(Arcs):
         return whole(self.nearby(start, place, floor, airtime, around))[0]
 
     def nearby(self, start: Start, place: np.ndarray, floor: float, airtime: float | None,
-               around: Sequence[Any]) -> Pieces[tuple[np.ndarray | None, Found | None]]:
-        """What `nearest` gives of a place that can't be reached, in pieces, and the plan to there."""
+               around: Sequence[Any], within: float = math.inf) -> Pieces[tuple[np.ndarray | None, Found | None]]:
+        """What `nearest` gives of a place that can't be reached, in pieces, and the plan to there. within: it is of no use farther than this from it [m]."""
         def ground(there: np.ndarray) -> float:
             """How high the floor is there: no higher than the place and than the slope on which it stands, as it goes on."""
             return floor_at(there[0], there[2], around, max(place[1], floor, floor + float(start.rise(there))) + 1e-6)
@@ -190,6 +190,11 @@ class Reach(Arcs):
         begun, way = found.copy(), place - found
         length = max(float(np.linalg.norm(way)), 1e-9)
         low, high = 0, math.ceil(min(length, FARTHEST * max(1.0, 9.81 / -self.gravity[1])) / GRID)
+        if within < length:
+            low = min(int((length - within) / GRID), high)
+            found = begun + low * GRID / length * way
+            if not (yield from reached(found)):
+                return None, None
         while high - low > 1:
             middle = (low + high) // 2
             there = begun + middle * GRID / length * way
