@@ -8,7 +8,7 @@ from ..body import Pose
 from ..contract import CharacterState, Intent, Leap
 from .body import measures
 from .controller import Jump
-from .motion import rolled
+from .motion import Stands, changes, heels_down, rolled
 
 
 def rehearse(jump: Jump) -> None:
@@ -20,5 +20,8 @@ def rehearse(jump: Jump) -> None:
     begun = jump.enter(state, intent)
     jump.step(begun, intent, 1.0 / 60.0)
     rolled(jump.physique, begun.memory.plan)
+    start, ahead = jump.start_of(state), np.array([0.0, 0.0, 1.0])  # what is asked besides of who goes
+    changes(jump.physique, Stands(start.centre, ahead, start.feet, 0), ahead, ahead, 0.0, -float(jump.gravity[1]))
+    heels_down(start.centre[None], start.feet[None], jump.physique.tables, 0.0)
     measures(jump.physique)  # found once a body
 

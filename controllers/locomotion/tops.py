@@ -27,21 +27,13 @@ def tops(around: Sequence[Any]) -> np.ndarray:
     """The tops (M, 9) of all boxes that stand around: middle x, z, cosine and sine of the heading, half sizes across and
     along [m], height [m], slope along, and how high they begin [m]; and pillars, as squares as large that nobody stands on.
     ValueError for what has no place or size, by its name."""
-    try:
-        found = _rows(around)
-    except (AttributeError, IndexError, TypeError, ValueError):
-        checked(around)
-        raise
-    if not (math.isfinite(found.sum()) and (found[:, 4:6] >= 0.0).all() and (found[:, 6] >= found[:, 8]).all()):
-        checked(around)
-    return found
-
-
-def _rows(around: Sequence[Any]) -> np.ndarray:
     rows = [(b.centre[0], b.centre[2], math.cos(b.heading), math.sin(b.heading), 0.5 * b.size[0], 0.5 * b.size[2],
              b.centre[1] + 0.5 * b.size[1], slope(b), b.centre[1] - 0.5 * b.size[1]) for b in around if is_box(b)]
     rows += [(p.foot[0], p.foot[2], 1.0, 0.0, SQUARE * p.radius, SQUARE * p.radius, ENDLESS, 0.0, p.foot[1]) for p in around if is_pillar(p) and p.height > STEP]
-    return np.array(rows, float) if rows else FLAT
+    found = np.array(rows, float) if rows else FLAT
+    if not (math.isfinite(found.sum()) and (found[:, 4:6] >= 0.0).all() and (found[:, 6] >= found[:, 8]).all()):
+        checked(around)
+    return found
 
 
 @kernel

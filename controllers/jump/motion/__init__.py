@@ -4,12 +4,12 @@ the flight, the landing, and the fall of who is struck in the air; `plan` is wha
 
 from .airborne import HEEL, PLANT, SAME
 from .as_shown import LASTS, Shown, as_shown
-from .bound import moments
+from .bound import Stands, changes, moments
 from .capsules import capsule_places, deepest, near
 from .clearing import depths, lifts, spread
 from .edges import STANDS, hangs, over_nothing, steps_over
 from .fall import fall
-from .footing import FADE, faded, settling, swivels
+from .footing import FADE, faded, heels_down, settling, swivels
 from .flight import flight_kernel
 from .ground_kernels import FREE, ground_kernel
 from .going_slowly import LIKE, Carried, carried
@@ -26,7 +26,7 @@ from .swinging import CLEARS, lifted, lowest
 from .thrust import Push, push
 
 __all__ = [
-    "BONES", "CLEARS", "FADE", "Carried", "FEET", "FREE", "HEEL", "LASTS", "LIKE", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STANDS", "STRAIGHTEST", "Shown", "as_shown",
-    "between_kernel", "capsule_places", "carried", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "hangs", "lifted", "lifts", "lowest", "moments", "near", "over_ledge", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
+    "BONES", "CLEARS", "FADE", "Carried", "FEET", "FREE", "HEEL", "LASTS", "LIKE", "PLANT", "ROLL_SPACED", "SAME", "SPINS", "TOUCHES", "Course", "Path", "Plan", "Push", "Pushing", "STANDS", "STRAIGHTEST", "Shown", "Stands", "as_shown",
+    "between_kernel", "capsule_places", "carried", "changes", "deepest", "depths", "faded", "fall", "flight_kernel", "ground_kernel", "grounded", "grounded_poses", "hangs", "heels_down", "lifted", "lifts", "lowest", "moments", "near", "over_ledge", "over_nothing", "path", "places", "push", "rolled", "rolls", "room",
     "settling", "sole_places", "spread", "steps_over", "struck", "swivels", "tumbled",
 ]

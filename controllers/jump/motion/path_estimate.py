@@ -152,7 +152,7 @@ def path(physique: Physique, start: Start, feet: np.ndarray, landing: np.ndarray
     slow = skips(start.velocity, size) if start.along else RUNS_UP if start.runs else LEAST_AIRTIME
     legs = Legs(upright.stand, upright.leads, upright.leaves, upright.trails, upright.touches, upright.carried)
     one = int(start.runs)
-    left, down, swung = (part if runner != 0 else mirrored(part) for part in (fitted[:, rows[0]], fitted[:, rows[1]], prior.unswung(rows[1], start.runs)))
+    left, down, swung = (np.ascontiguousarray(part if runner != 0 else mirrored(part)) for part in (fitted[:, rows[0]], fitted[:, rows[1]], prior.unswung(rows[1], start.runs)))
     carry = Carriage(left, down, swung, calm(np.ones((2, COLUMNS)), start, rows, size) - shift, shift, prior.depth, prior.least[one], prior.most[one], ahead, pace, low_arms)
     leap = Leap(goal, towards, lays, along, float(abs(lays @ yaw(start.lands)[:, 0])) if start.along else across, np.nan if airtime is None else float(airtime),
                 max((slow + start.ready * HIGHER[0] * min(far / (HIGHER[1] * size), 1.0)) * float(np.sqrt(9.81 / g * size)), least), flies_between(start.velocity, size, g), keeps * stretched * start.velocity * FLAT,

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from .things import is_box, is_pillar, slope
+from .things import checked, is_box, is_pillar, slope
 
 Made = TypeVar("Made")
 KEPT = 64
@@ -45,15 +45,23 @@ class _Same:
 
 
 def of_the_same(make: Callable[[Sequence[Any]], Made]) -> Callable[[Sequence[Any]], Made]:
-    """Decorate what makes something of things alone: it is made once for each tuple of things that can't change. What is made is shared, and not to be written to."""
+    """Decorate what makes something of things alone: it is made once for each tuple of things that can't change. What is made is shared, and not to be written to.
+    What things lack for it is a ValueError that names it, see `checked`."""
+
+    def told(around: Sequence[Any]) -> Made:
+        try:
+            return make(around)
+        except (AttributeError, IndexError, TypeError, ValueError):
+            checked(around)
+            raise
 
     @lru_cache(KEPT)
     def kept(same: _Same) -> Made | None:
-        return make(same.things) if all(map(_frozen, same.things)) else None
+        return told(same.things) if all(map(_frozen, same.things)) else None
 
     def made(around: Sequence[Any]) -> Made:
         found = kept(_Same(around)) if type(around) is tuple else None
-        return make(around) if found is None else found
+        return told(around) if found is None else found
 
     made.__doc__, made.__name__ = make.__doc__, make.__name__
     return made
