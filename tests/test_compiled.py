@@ -1,18 +1,25 @@
 """Compiled kernels: as fast the second time, wherever the sources lie, and never those of other sources or damaged ones."""
 
+import importlib
 import os
+import pkgutil
 import shutil
+import sys
 import time
 from pathlib import Path
 
 import pytest
 
+from numba.core.dispatcher import Dispatcher
+
+from gambol import controllers
 from gambol.controllers import compiled
+from gambol.controllers.compiled import cache_places, ingredients
 
 import fresh_process
 from fresh_process import Fresh
 
-SOURCE = Path(compiled.__file__)
+SOURCE = Path(compiled.__file__).parent
 
 
 @pytest.fixture
@@ -21,7 +28,7 @@ def package(tmp_path):
     home = tmp_path / "code" / "pack"
     home.mkdir(parents=True)
     (home / "__init__.py").write_text("")
-    shutil.copy(SOURCE, home / "compiled.py")
+    shutil.copytree(SOURCE, home / "compiled", ignore=shutil.ignore_patterns("__pycache__"))
     (home / "inner.py").write_text("from .compiled import kernel\n\n@kernel\ndef inner(x):\n    return x + 1\n")
     (home / "outer.py").write_text("from .compiled import kernel\nfrom .inner import inner\n\n"
                                    "@kernel(fastmath=True)\ndef outer(x):\n    return 10 * inner(x)\n")
@@ -99,6 +106,102 @@ def test_a_change_in_another_file_is_seen(package, kept):
     assert len(folders(kept)) == 2
 
 
+RICH = """from collections import namedtuple
+import numpy as np
+from . import inner as room
+from .compiled import kernel
+
+Two = namedtuple("Two", "a b")
+TABLE, PAIR = np.array([1.0, 2.0]), Two(3.0, 4.0)
+NAMES = ("one", "other")
+
+def plain():
+    return 1.0
+
+def made(factor):
+    @kernel
+    def within(x):
+        return x * factor
+    return within
+
+within = made(2.0)
+
+@kernel
+def helped(x, more=5.0):
+    '''Text.'''
+    return x + more + 0.0  # a remark
+
+@kernel(fastmath={"nnan"})
+def outer(x):
+    return outer_of(Two(x, 1.0))
+
+@kernel
+def outer_of(two):
+    return TABLE[1] + PAIR.b + room.FACTOR * helped(two.a) + within(two.b) + (0.0 if "one" in NAMES else 7.0)
+"""
+
+
+@pytest.fixture
+def rich(package):
+    """A package whose kernels name all kinds of things."""
+    (package / "outer.py").write_text(RICH)
+    with (package / "inner.py").open("a") as inner:
+        inner.write("\nFACTOR = 10.0\n")
+    assert call(package) == ["68.0", "0"]
+    return package
+
+
+@pytest.mark.parametrize("before, after", (
+    ("# a remark", "# another"), ("Text.", "Other words."), ("\ndef plain", "\n\n\n\ndef plain"), ("return 1.0", "return 2.0"), ("def plain():", "def other(name):")))
+def test_what_makes_no_other_code_compiles_nothing(rich, kept, before, after):
+    """A comment, a docstring, lines above it, another function: a kernel is taken over from the sources before."""
+    changed(rich / "outer.py", before, after)
+    assert call(rich) == ["68.0", "1"] and len(folders(kept)) == 2
+    shutil.rmtree(folders(kept)[0])
+    assert call(rich) == ["68.0", "1"], "and is kept with the new ones, when the old ones go"
+
+
+@pytest.mark.parametrize("name, before, after, says", (
+    ("outer", "np.array([1.0, 2.0])", "np.array([1.0, 3.0])", "69.0"), ("outer", "Two(3.0, 4.0)", "Two(3.0, 5.0)", "69.0"),
+    ("outer", '"a b"', '"b a"', None), ("outer", "more=5.0", "more=6.0", "78.0"), ("outer", "made(2.0)", "made(3.0)", "69.0"),
+    ("outer", '("one", "other")', '("none", "other")', "75.0"), ("outer", "+ 0.0  #", "+ 1.0  #", "78.0"), ("outer", "x * factor", "x + factor", "69.0"),
+    ("outer", "nnan", "ninf", "68.0"), ("inner", "FACTOR = 10.0", "FACTOR = 20.0", "128.0")))
+def test_what_makes_other_code_compiles_it(rich, name, before, after, says):
+    """A constant's value, fields in another order, a callee's default, what a function closes over, an option, a constant of another module."""
+    changed(rich / f"{name}.py", before, after)
+    now = call(rich)
+    assert now[1] == "0" and now[0] == (says or now[0])
+
+
+def test_what_a_named_tuple_holds_counts_where_one_is_told(rich):
+    """Its type is named alike whatever its fields are called."""
+    told = "from pack.outer import Two, outer_of; print(outer_of(Two(1.0, 1.0)), sum(outer_of.stats.cache_hits.values()))"
+    before = call(rich, told)
+    changed(rich / "outer.py", "# a remark", "# another")
+    assert call(rich, told) == [before[0], "1"]
+    changed(rich / "outer.py", '"a b"', '"b a"')
+    assert call(rich, told)[1] == "0"
+
+
+def test_what_cannot_be_told_goes_with_all_sources(rich):
+    """A class of ours may hold anything."""
+    changed(rich / "outer.py", "room.FACTOR", "Kind.FACTOR.value")
+    changed(rich / "outer.py", "from . import inner as room", "import enum\n\nclass Kind(enum.IntEnum):\n    FACTOR = 10")
+    first = call(rich)
+    assert call(rich) == [first[0], "1"]
+    changed(rich / "outer.py", "# a remark", "# another")
+    assert call(rich) == [first[0], "0"]
+
+
+def test_what_our_own_kernels_are_made_of_can_be_told():
+    """Else all of those, and their callers, would be compiled for every change of any source."""
+    for module in pkgutil.walk_packages(controllers.__path__, f"{controllers.__name__}."):
+        importlib.import_module(module.name)
+    kernels = {value for name, module in list(sys.modules.items()) if name.startswith(controllers.__name__)
+               for value in vars(module).values() if isinstance(value, Dispatcher)}
+    assert len(kernels) > 400 and len({ingredients.ingredients(kernel, ()) for kernel in kernels}) == len(kernels)
+
+
 @pytest.mark.parametrize("damage", (lambda data: b"", lambda data: data[:3], lambda data: data[:len(data) // 2],
                                     lambda data: b"garbage" * 1000, lambda data: data[:-100] + bytes(100),
                                     lambda data: b"\0\0\0\0"),
@@ -132,16 +235,16 @@ def test_where_nothing_can_be_kept_it_is_told(monkeypatch, tmp_path, home, says)
     """Else a minute goes in every start, and nobody knows why; and no folder is called ~."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").touch()
-    monkeypatch.setattr(compiled, "cache_home", compiled.cache_home.__wrapped__)
-    monkeypatch.setattr(compiled, "usual_home", lambda: tmp_path / home if home != "~" else Path("~/.cache/gambol"))
+    monkeypatch.setattr(cache_places, "cache_home", cache_places.cache_home.__wrapped__)
+    monkeypatch.setattr(cache_places, "usual_home", lambda: tmp_path / home if home != "~" else Path("~/.cache/gambol"))
     assert says in compiled.forgets() and "GAMBOL_CACHE" in compiled.forgets()
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
-    monkeypatch.setattr(compiled, "usual_home", lambda: tmp_path / "new")
+    monkeypatch.setattr(cache_places, "usual_home", lambda: tmp_path / "new")
     assert compiled.forgets() == ""
 
 
 def test_a_full_disk_keeps_nothing_and_ends_nothing(package, kept):
-    assert call(package, f"import os\ndef full(*paths): raise OSError(28, 'no space left')\nc.os.replace = full\n{CALLED}") == [
+    assert call(package, f"import os\ndef full(*paths): raise OSError(28, 'no space left')\nos.replace = full\n{CALLED}") == [
         "20.0", "0"]
     assert list(folders(kept)[0].iterdir()) == []
 
@@ -202,7 +305,7 @@ def test_what_is_no_source_does_not_matter(package):
 
 def test_another_numba_has_another_folder(package):
     one, = call(package, "print(c.cache_folder().name)")
-    other, = call(package, "c.numba.__version__ = 'other'; c.cache_folder.cache_clear(); print(c.cache_folder().name)")
+    other, = call(package, "import pack.compiled.cache_places as p; p.TOOLS = 'other'; c.cache_folder.cache_clear(); print(c.cache_folder().name)")
     assert one != other
 
 
@@ -220,8 +323,8 @@ def test_it_lies_where_programs_keep_such_things(monkeypatch, platform, places, 
         monkeypatch.delenv(name, raising=False)
     for name, place in places.items():
         monkeypatch.setenv(name, place)
-    monkeypatch.setattr(compiled.sys, "platform", platform)
-    assert compiled.usual_home() == Path(expected).expanduser()
+    monkeypatch.setattr(cache_places.sys, "platform", platform)
+    assert cache_places.usual_home() == Path(expected).expanduser()
 
 
 def test_the_setting_of_others_is_left_as_it_was(package):

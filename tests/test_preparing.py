@@ -139,7 +139,7 @@ def loaded():
 
 def compiled():
     return {f"{name}.{key}": len(value.signatures) for name, module in list(sys.modules.items()) if name.startswith("gambol")
-            for key, value in list(vars(module).items()) if hasattr(value, "signatures")}
+            for key, value in list(vars(module).items()) if isinstance(getattr(value, "signatures", None), list)}
 
 def played(intent, steps, state=None):
     state = somebody.start() if state is None else state
