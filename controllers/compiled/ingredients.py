@@ -106,8 +106,8 @@ def _class(kind: Any) -> Any:
     return kind.__module__, kind.__qualname__
 
 
-def _type(kind: Any) -> Any:
+def _type(kind: types.Type) -> Any:
     """A type of an argument, with the fields of all named tuples in it, which its name leaves out."""
-    inner = list(kind) if isinstance(kind, types.BaseTuple) else [
-        part for part in (getattr(kind, name, None) for name in ("type", "dtype")) if isinstance(part, types.Type)]
-    return repr(kind), _class(kind.instance_class) if isinstance(kind, types.BaseNamedTuple) else None, [_type(one) for one in inner]
+    inner = [*getattr(kind, "types", ()), *(part for name in ("type", "dtype") if isinstance(part := getattr(kind, name, None), types.Type))]
+    made = getattr(kind, "instance_class", None)
+    return repr(kind), made and _class(made), [_type(one) for one in inner]
