@@ -95,6 +95,13 @@ def come_down(m, foot, height, dt):
 
 
 @kernel
+def _pivot(heel, ball):
+    """About which point a foot turns whose heel and ball grip so firmly: 0 its ball, 1 its heel. About the one that is held, however firmly the other drags."""
+    free_heel, free_ball = heel * (1.0 - ball), ball * (1.0 - heel)
+    return free_heel / (free_heel + free_ball) if free_heel + free_ball > 1e-6 else heel / (heel + ball)
+
+
+@kernel
 def hold_kernel(m, foot, before, now, dt):
     """Take from a foot that stands, or has begun to, as much of the blend's movement as it grips: the offset of what is shown from the
     blend, x, z of the ball in the world and the foot's turn."""
@@ -109,7 +116,7 @@ def hold_kernel(m, foot, before, now, dt):
     if m.aimed[foot] == 1 and grip < 1.0:  # to the very place that it chose
         for i in range(2):
             offset[i] += (m.land[foot, i] - offset[i]) * (1.0 - grip) * (1.0 - 2.0 ** (-dt / AIM_HALFLIFE))
-    heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
+    heel = _pivot(m.grip[h], m.grip[b])
     was_x, was_z = before[h, 0] - before[b, 0], before[h, 1] - before[b, 1]
     x, z = now[h, 0] - now[b, 0], now[h, 1] - now[b, 1]
     blended = math.atan2(was_z * x - was_x * z, was_x * x + was_z * z)
