@@ -1,15 +1,17 @@
 """How the points of feet take hold and let go: what is held does not move, and what is not does not drag."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gambol.controllers.locomotion.grip import hold_kernel
+from gambol.controllers.locomotion.grip import hold_kernel, take_foot
 from gambol.controllers.locomotion.kernel import LABELS_AT
 from playing import FPS
 
 HEEL, BALL = 0, 1
 ON = st.floats(0.05, 0.95)
+STILL = np.zeros((4, 2))
 
 
 def walking(locomotion, progress, height=0.0):
@@ -40,3 +42,21 @@ def test_a_foot_turns_about_the_point_that_is_held(locomotion, drags, held, angl
     x, z, turn = memory["offset"][0, 0]
     shown = turned(now[HEEL], turn, now[BALL], np.zeros(2)) if held == HEEL else now[BALL]
     assert np.abs(shown + [x, z] - before[held]).max() < 1e-6
+
+
+@pytest.mark.parametrize("progress, height, speed, takes", [(0.9, 0.004, 0.4, True), (0.9, 0.03, 0.4, False), (0.9, 0.004, 2.0, False), (0.6, 0.004, 0.4, False)])
+def test_a_heel_that_has_come_down_slowly_takes_hold(locomotion, progress, height, speed, takes):
+    """Whatever its label says; one that is high, fast or in mid-swing swings on."""
+    memory = walking(locomotion, progress, height)
+    take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL + [speed / FPS, 0.0], 1 / FPS)
+    assert memory["grip"][0, HEEL] > 0.3 if takes else memory["grip"][0, HEEL] == 0.0
+
+
+@given(st.floats(0.0, 1.0), st.floats(-0.5, 0.5))
+def test_a_foot_that_takes_hold_goes_on_as_it_swung(locomotion, label, rate):
+    """What it went beside the blend was lost at once, and its ankle thrown."""
+    memory = walking(locomotion, 0.95)
+    memory["row"][0, LABELS_AT], memory["row_rate"][0, LABELS_AT], memory["offset_rate"][0, 0, 0] = label, 1.0, rate
+    memory["points"][0, :, 1] += 0.02
+    take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert np.isclose(memory["aside_rate"][0, 0, 0], rate if memory["grip"][0, HEEL] > 0.0 else 0.0, atol=1e-6)
