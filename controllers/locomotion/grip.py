@@ -44,6 +44,9 @@ LEAVES, LENT = -1.0, 0.3
 """A ball whose label falls faster than this [1/s], its heel free by more than the second, does not hold on again: its leg would be stretched, and whip."""
 LATE, RISEN = 2.0, 0.05
 """Nor does a heel so long after its swing began, over the time of that, its ball firm, or risen for its leg by more than the second [rad]: it has begun to leave. It was pulled down within a frame as a turn began."""
+LEFT = 0.85, 0.97
+"""On even ground a point that grips less than the first so late leaves, and a ball that its heel's rise strains less than the second; they do not drag for the rest of their stance: labels waver
+there as somebody turns."""
 
 
 @kernel
@@ -71,9 +74,9 @@ def take_foot(m, foot, height, before, now, dt):
 
 @kernel
 def _take_hold(m, k, height, speed, dt):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. speed: how fast
-    it goes [m/s]."""
-    wanted = 1.0
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, no less while that rises, and only once it is
+    low. speed: how fast it goes [m/s]."""
+    wanted, left, even = 1.0, 0.0, m.base[0] == m.base[1]
     if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
@@ -83,6 +86,10 @@ def _take_hold(m, k, height, speed, dt):
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
+        elif even and m.row_rate[LABELS_AT + k] > 0.0:
+            wanted = max(wanted, m.grip[k])
+        if even and swing_progress(m, k // 2) > LATE:
+            left = LEFT[1] if strain > 0.0 else LEFT[0]
         wanted = max(wanted, _touches(m, k, height, speed))
     risen = FOOT * math.sin(max(m.rise[k // 2], 0.0)) if k % 2 == 0 else 0.0
     if wanted > m.grip[k] and not m.settled and (
@@ -95,6 +102,8 @@ def _take_hold(m, k, height, speed, dt):
             leaves = not (m.settled or m.waits) and (m.grip[k + 1] >= 1.0 or m.rise[k // 2] > RISEN) and swing_progress(m, k // 2) > LATE
         if leaves:
             wanted = m.grip[k]
+    if m.grip[k] < left:
+        wanted = 0.0
     step = dt * _grip_rate(m, speed)
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gambol.controllers.locomotion.grip import hold_kernel, take_foot
+from gambol.controllers.locomotion.grip import LATE, LEFT, hold_kernel, take_foot
 from gambol.controllers.locomotion.kernel import LABELS_AT
+from gambol.controllers.locomotion.memory import RUN
 from playing import FPS
 
 HEEL, BALL = 0, 1
@@ -60,3 +61,31 @@ def test_a_foot_that_takes_hold_goes_on_as_it_swung(locomotion, label, rate):
     memory["points"][0, :, 1] += 0.02
     take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
     assert np.isclose(memory["aside_rate"][0, 0, 0], rate if memory["grip"][0, HEEL] > 0.0 else 0.0, atol=1e-6)
+
+
+@given(st.floats(0.05, LEFT[0] - 0.01), st.floats(0.3, 1.0), st.floats(-5.0, 5.0), st.sampled_from([HEEL, BALL]))
+def test_what_has_begun_to_leave_leaves(locomotion, grip, label, rate, k):
+    """Late in a stance: half held, it slid on for up to ten frames."""
+    memory = walking(locomotion, LATE + 0.1)
+    memory["grip"], memory["row"][0, LABELS_AT + k], memory["row_rate"][0, LABELS_AT + k] = grip, label, rate
+    for _ in range(4):
+        take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert memory["grip"][0, k] == 0.0
+
+
+def test_a_strained_ball_that_slips_is_let_go(locomotion):
+    """As a turn begins, its heel 12 cm up: held by 0.85 it went by 2.8 cm."""
+    memory = walking(locomotion, LATE + 0.4)
+    memory["grip"][0, BALL], memory["rise"][0, 0], memory["row"][0, LABELS_AT + BALL], memory["row_rate"][0, LABELS_AT + BALL] = 0.9, 0.45, 1.0, 1.0
+    for _ in range(4):
+        take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert memory["grip"][0, BALL] == 0.0
+
+
+@given(ON, st.floats(0.0, 0.99), st.floats(0.1, 5.0))
+def test_nothing_lets_go_while_its_label_rises(locomotion, grip, label, rate):
+    """As a gait changes just after a foot came to stand, whose label is lower in the other."""
+    memory = walking(locomotion, 1.4)
+    memory["family"], memory["grip"], memory["row"][0, LABELS_AT], memory["row_rate"][0, LABELS_AT] = RUN, grip, label, rate
+    take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert memory["grip"][0, HEEL] >= np.float32(grip)
