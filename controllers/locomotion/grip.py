@@ -111,12 +111,10 @@ def _take_hold(m, k, height, speed, dt):
 
 @kernel
 def _touches(m, k, height, speed):
-    """How surely (0 … 1) a walker's point k, which goes so fast [m/s], has come down to even ground as its swing ends; once it has, it stands."""
+    """How surely (0 … 1) a walker's point k, which goes so fast [m/s], has come down to even ground as its swing ends, slowly, or has begun to stand."""
     if m.family != WALK or m.base[0] != m.base[1] or m.torn[k // 2] == 1 or not ENDS[0] < swing_progress(m, k // 2) < ENDS[1]:
         return 0.0
-    if m.grip[k] > 0.0:
-        return 1.0
-    if speed > SLOW:
+    if m.grip[k] <= 0.0 and speed > SLOW:
         return 0.0
     above = m.points[k, 1] + m.raised[k] - height - lie_kernel(m, k)
     share = min(max((NEAR[1] - above) / (NEAR[1] - NEAR[0]), 0.0), 1.0)
