@@ -32,6 +32,9 @@ grips."""
 NEAR, ENDS, SLOW = (0.006, 0.014), (0.8, 1.2), 0.7
 """A walker's point takes hold before its label does, too, as it has come down: the surer the lower it is between these above where it rests [m], around the end of its swing, over the time of
 that, and slower than the last [m/s]. Heels were on the floor and glided on at 0.3 m/s for up to four frames."""
+EARLY = 1.5, 1.1
+"""On even ground what has come to stand holds on until so long after its swing began, over the time of that, walking and running: labels waver, and are lower in the other gait, as a walker
+who has just come down becomes a runner; half let go for a frame or two, a heel went on by 1.7 cm."""
 STOPPED = 60.0
 """A walker's foot is stopped no harder than this [m/s²]: where a run becomes a walk just before a strike it comes down at 3.5 m/s, and stood within a frame."""
 AIM_HALFLIFE = 0.02
@@ -74,8 +77,8 @@ def take_foot(m, foot, height, before, now, dt):
 
 @kernel
 def _take_hold(m, k, height, speed, dt):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, no less while that rises, and only once it is
-    low. speed: how fast it goes [m/s]."""
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, no less while that rises or it has just come
+    down, and only once it is low. speed: how fast it goes [m/s]."""
     wanted, left, even = 1.0, 0.0, m.base[0] == m.base[1]
     if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
@@ -86,7 +89,7 @@ def _take_hold(m, k, height, speed, dt):
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
-        elif even and m.row_rate[LABELS_AT + k] > 0.0:
+        elif even and (m.row_rate[LABELS_AT + k] > 0.0 or ENDS[0] < swing_progress(m, k // 2) < EARLY[m.family]):
             wanted = max(wanted, m.grip[k])
         if even and swing_progress(m, k // 2) > LATE:
             left = LEFT[1] if strain > 0.0 else LEFT[0]
