@@ -16,7 +16,7 @@ import numpy as np
 from ..body import relative_kernel, spring_kernel
 from ..compiled import kernel
 from .foot_points import on_floor, shown_kernel
-from .grip import come_down, grip_rate, hold_kernel, take_hold
+from .grip import come_down, hold_kernel, take_foot
 from .last_stride import BESIDE, OFF, STAYS
 from .legs import REACH, leg_kernel, leg_length, tilt_kernel, toe_kernel
 from .root_motion import as_runner
@@ -70,8 +70,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     m.runner += ((as_runner(m) if m.stairs > 0.0 else 0.0) - m.runner) * (1.0 - 2.0 ** (-dt / RUNNER_HALFLIFE))
     even = m.base[0] == m.base[1] and abs(m.tilt[0, 0]) + abs(m.tilt[0, 1]) + abs(m.tilt[1, 0]) + abs(m.tilt[1, 1]) == 0.0
     for foot in range(2):
-        for k in range(2 * foot, 2 * foot + 2):
-            take_hold(m, k, legs.height, dt * grip_rate(m, foot, (now[k, 0] - before[k, 0]) / dt, (now[k, 1] - before[k, 1]) / dt))
+        take_foot(m, foot, legs.height, before, now, dt)
         clears[foot] = clearance + OVER * abs(m.base[foot] - m.left[foot])
         if even and m.stairs <= 0.0 and led_up(m, foot, ahead):
             lead_up(m, foot, ahead, legs.height, swings_over(m, foot, clears[foot]), dt)

@@ -29,6 +29,12 @@ GATE = 0.035
 GRIP_RATE = 30.0, 25.0
 """How fast a grip may change [1/s]: walking, where both feet are as high; and on stairs, where a foot that stops sooner ends in a riser, and running, since who runs pushes only while a foot
 grips."""
+NEAR, ENDS, SLOW = (0.006, 0.014), (0.8, 1.2), 0.7
+"""A walker's point takes hold before its label does, too, as it has come down: the surer the lower it is between these above where it rests [m], around the end of its swing, over the time of
+that, and slower than the last [m/s]. Heels were on the floor and glided on at 0.3 m/s for up to four frames."""
+EARLY = 1.5, 1.1
+"""On even ground what has come to stand holds on until so long after its swing began, over the time of that, walking and running: labels waver, and are lower in the other gait, as a walker
+who has just come down becomes a runner; half let go for a frame or two, a heel went on by 1.7 cm."""
 STOPPED = 60.0
 """A walker's foot is stopped no harder than this [m/s²]: where a run becomes a walk just before a strike it comes down at 3.5 m/s, and stood within a frame."""
 AIM_HALFLIFE = 0.02
@@ -41,21 +47,39 @@ LEAVES, LENT = -1.0, 0.3
 """A ball whose label falls faster than this [1/s], its heel free by more than the second, does not hold on again: its leg would be stretched, and whip."""
 LATE, RISEN = 2.0, 0.05
 """Nor does a heel so long after its swing began, over the time of that, its ball firm, or risen for its leg by more than the second [rad]: it has begun to leave. It was pulled down within a frame as a turn began."""
+LEFT = 0.85, 0.97
+"""On even ground a point that grips less than the first so late leaves, and a ball that its heel's rise strains less than the second; they do not drag for the rest of their stance: labels waver
+there as somebody turns."""
 
 
 @kernel
-def grip_rate(m, foot, speed_x, speed_z):
-    """How fast the grip of a foot's point may change [1/s]. speed_x, speed_z: how fast the blend's goes, in the world [m/s]."""
+def _grip_rate(m, speed):
+    """How fast the grip of a point may change [1/s] that goes so fast [m/s]."""
     if m.family != WALK or m.base[0] != m.base[1]:
         return sooner(m) * GRIP_RATE[1]
-    return min(sooner(m) * GRIP_RATE[0], STOPPED / max(math.hypot(speed_x + m.aside_rate[foot, 0], speed_z + m.aside_rate[foot, 1]), 1e-3))
+    return min(sooner(m) * GRIP_RATE[0], STOPPED / max(speed, 1e-3))
 
 
 @kernel
-def take_hold(m, k, height, step):
-    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, and only once it is low. step: how far a
-    grip changes at most."""
-    wanted = 1.0
+def take_foot(m, foot, height, before, now, dt):
+    """How firmly a foot's heel and ball grip after dt; one that begins to goes on as it swung, the less the firmer it grips. before, now: (4, 2) where the blend's points
+    were and are, in the world [m]."""
+    swung = m.grip[2 * foot] <= 0.0 and m.grip[2 * foot + 1] <= 0.0
+    aside = m.aside_rate[foot]
+    if swung:
+        aside[0], aside[1] = aside[0] + m.offset_rate[foot, 0], aside[1] + m.offset_rate[foot, 1]
+    for k in range(2 * foot, 2 * foot + 2):
+        speed = math.hypot((now[k, 0] - before[k, 0]) / dt + aside[0], (now[k, 1] - before[k, 1]) / dt + aside[1])
+        _take_hold(m, k, height, speed, dt)
+    if swung and m.grip[2 * foot] <= 0.0 and m.grip[2 * foot + 1] <= 0.0:
+        aside[0], aside[1] = aside[0] - m.offset_rate[foot, 0], aside[1] - m.offset_rate[foot, 1]
+
+
+@kernel
+def _take_hold(m, k, height, speed, dt):
+    """How firmly point k grips: fully at rest, until a start leaves it and once a stop has set it down, else by its blended label, no less while that rises or it has just come
+    down, and only once it is low. speed: how fast it goes [m/s]."""
+    wanted, left, even = 1.0, 0.0, m.base[0] == m.base[1]
     if not (m.settled or m.waits or shift_left(m) > 0.0):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
@@ -65,6 +89,11 @@ def take_hold(m, k, height, step):
             wanted = 0.0
             if 0.3 < swing_progress(m, k // 2) < 1.0:
                 m.torn[k // 2] = 0
+        elif even and (m.row_rate[LABELS_AT + k] > 0.0 or ENDS[0] < swing_progress(m, k // 2) < EARLY[m.family]):
+            wanted = max(wanted, m.grip[k])
+        if even and swing_progress(m, k // 2) > LATE:
+            left = LEFT[1] if strain > 0.0 else LEFT[0]
+        wanted = max(wanted, _touches(m, k, height, speed))
     risen = FOOT * math.sin(max(m.rise[k // 2], 0.0)) if k % 2 == 0 else 0.0
     if wanted > m.grip[k] and not m.settled and (
             m.points[k, 1] + m.raised[k] + risen > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
@@ -76,8 +105,23 @@ def take_hold(m, k, height, step):
             leaves = not (m.settled or m.waits) and (m.grip[k + 1] >= 1.0 or m.rise[k // 2] > RISEN) and swing_progress(m, k // 2) > LATE
         if leaves:
             wanted = m.grip[k]
+    if m.grip[k] < left:
+        wanted = 0.0
+    step = dt * _grip_rate(m, speed)
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)
     m.standing[k] = 1 if m.grip[k] > 0.5 else 0
+
+
+@kernel
+def _touches(m, k, height, speed):
+    """How surely (0 … 1) a walker's point k, which goes so fast [m/s], has come down to even ground as its swing ends, slowly, or has begun to stand."""
+    if m.family != WALK or m.base[0] != m.base[1] or m.torn[k // 2] == 1 or not ENDS[0] < swing_progress(m, k // 2) < ENDS[1]:
+        return 0.0
+    if m.grip[k] <= 0.0 and speed > SLOW:
+        return 0.0
+    above = m.points[k, 1] + m.raised[k] - height - lie_kernel(m, k)
+    share = min(max((NEAR[1] - above) / (NEAR[1] - NEAR[0]), 0.0), 1.0)
+    return share * share * (3.0 - 2.0 * share)
 
 
 @kernel
@@ -95,6 +139,13 @@ def come_down(m, foot, height, dt):
 
 
 @kernel
+def _pivot(heel, ball):
+    """About which point a foot turns whose heel and ball grip so firmly: 0 its ball, 1 its heel. About the one that is held, however firmly the other drags."""
+    free_heel, free_ball = heel * (1.0 - ball), ball * (1.0 - heel)
+    return free_heel / (free_heel + free_ball) if free_heel + free_ball > 1e-6 else heel / (heel + ball)
+
+
+@kernel
 def hold_kernel(m, foot, before, now, dt):
     """Take from a foot that stands, or has begun to, as much of the blend's movement as it grips: the offset of what is shown from the
     blend, x, z of the ball in the world and the foot's turn."""
@@ -109,7 +160,7 @@ def hold_kernel(m, foot, before, now, dt):
     if m.aimed[foot] == 1 and grip < 1.0:  # to the very place that it chose
         for i in range(2):
             offset[i] += (m.land[foot, i] - offset[i]) * (1.0 - grip) * (1.0 - 2.0 ** (-dt / AIM_HALFLIFE))
-    heel = m.grip[h] / (m.grip[h] + m.grip[b])  # about which point of the foot it stands: 0 its ball, 1 its heel
+    heel = _pivot(m.grip[h], m.grip[b])
     was_x, was_z = before[h, 0] - before[b, 0], before[h, 1] - before[b, 1]
     x, z = now[h, 0] - now[b, 0], now[h, 1] - now[b, 1]
     blended = math.atan2(was_z * x - was_x * z, was_x * x + was_z * z)

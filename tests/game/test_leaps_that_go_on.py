@@ -63,11 +63,11 @@ def test_walkers_who_leap_again_and_again_go_on(someone):
 
 def test_who_taps_in_the_air_leaps_on_from_the_landing_that_brakes_him(someone):
     line, made = Timeline(begin(World((Character("A", someone, someone.start()),)), 1)), []
-    for step in range(round(4.2 * RATE)):
-        held, yaw = step < 2.65 * RATE, line.now.players[0].camera.yaw
+    for step in range(round(4.2 * RATE)):  # pressed a tenth of a second later in his stride, he would land walking on
+        held, yaw = step < 2.55 * RATE, line.now.players[0].camera.yaw
         flies = len(made) == 1 and made[0].take_off + 0.1 < line.now.after.characters[0].state.memory.memory.time < made[0].take_off + 0.2
         before = line.now
-        line.advance((Wish(move=(held * math.sin(yaw), held * math.cos(yaw)), run=0.3, jump=2.5 * RATE <= step < 2.65 * RATE or flies).rounded(),))
+        line.advance((Wish(move=(held * math.sin(yaw), held * math.cos(yaw)), run=0.3, jump=2.4 * RATE <= step < 2.55 * RATE or flies).rounded(),))
         assert not refused(before, line.now)
         memory = line.now.after.characters[0].state.memory.memory
         if isinstance(memory, Jumping) and (not made or memory.plan is not made[-1]):

@@ -10,7 +10,7 @@ from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion.fading import SINKS, held_up_kernel
 from gambol.controllers.locomotion.first_stride import FASTEST_TURN, SHARE_HALFLIFE, start_kernel
 from gambol.controllers.locomotion.gaze import QUICKEST, look_on
-from gambol.controllers.locomotion.grip import LATE, take_hold
+from gambol.controllers.locomotion.grip import LATE, take_foot
 from gambol.controllers.locomotion.kernel import LABELS_AT
 from playing import FPS, play
 
@@ -122,7 +122,7 @@ def test_a_ball_that_leaves_does_not_hold_on_again(locomotion, grip, label, fall
     memory = locomotion.start().memory.copy().reshape(1)
     memory["settled"], memory["phase"], memory["lent"] = 0, 0.45, lent
     memory["grip"], memory["row"][0, LABELS_AT + 3], memory["row_rate"][0, LABELS_AT + 3] = grip, label, falls
-    take_hold(memory[0], 3, locomotion.tables.legs.height, 25.0 / FPS)
+    take_foot(memory[0], 1, locomotion.tables.legs.height, np.zeros((4, 2)), np.zeros((4, 2)), 1 / FPS)
     assert memory["grip"][0, 3] <= np.float32(grip)
 
 
@@ -132,7 +132,7 @@ def test_a_heel_that_leaves_does_not_hold_on_again(locomotion, grip, label, lent
     memory = locomotion.start().memory.copy().reshape(1)
     memory["settled"], memory["lent"], memory["phase"] = 0, lent, 0.38 * LATE + 0.02
     memory["grip"], memory["row"][0, LABELS_AT], memory["row_rate"][0, LABELS_AT] = (grip, 1.0, 1.0, 1.0), label, 1.0
-    take_hold(memory[0], 0, locomotion.tables.legs.height, 25.0 / FPS)
+    take_foot(memory[0], 0, locomotion.tables.legs.height, np.zeros((4, 2)), np.zeros((4, 2)), 1 / FPS)
     assert memory["grip"][0, 0] <= np.float32(grip)
 
 
