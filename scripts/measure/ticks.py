@@ -1,5 +1,6 @@
 """Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls; a script's, of
-who walks or runs and is told to leap to a place aside; a leap that is asked for in every step and refused; hands that hold a leap as they run at gaps, boxes and hurdles.
+who walks or runs and is told to leap to a place aside; a leap that is asked for in every step and refused; hands that hold a leap as they run at gaps, boxes and hurdles;
+random hands of `hands.py`, which leap at whatever they head for.
 
     python scripts/measure/ticks.py [--clicks 40] [--only scripts]
 
@@ -20,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from _struck_rooms import room
+from hands import STAGES, deeds, wished
 from run_ups import RUNNING, running_stage
 
 from gambol.controllers.contract import Goal, Intent, Leap, Strike
@@ -137,13 +139,27 @@ def held(kind: str, count: int, seed: int) -> Iterator[None]:
             yield
 
 
+def restless(stage: str, seed: int, minutes: float) -> Iterator[None]:
+    """The ticks of a game that random hands play."""
+    rng, who = np.random.default_rng(seed), person()
+    things, ticks = STAGES[stage](seed), 0
+    line = Timeline(begin(World((Character("A", who, who.start()),), tuple(things)), 1))
+    for _, lasts, place, how in deeds(rng, things):
+        for tick in range(max(1, round(lasts * RATE))):
+            line.advance((wished(line.now.after.characters[0].state, line.now.players[0].camera.yaw, place, tick == 0, **how),))
+            yield
+        ticks += max(1, round(lasts * RATE))
+        if ticks > 60 * RATE * minutes:
+            return
+
+
 def main() -> None:
     """Print all figures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clicks", type=int, default=20)
     parser.add_argument("--only", default="", help="lines that begin so")
     asked = parser.parse_args()
-    for _ in chain(clicks(3, 9), strikes(4, 9), aside(2, 9), *(held(kind, 2, 9) for kind in RUNNING)):  # compiled, loaded
+    for _ in chain(clicks(3, 9), strikes(4, 9), aside(2, 9), *(held(kind, 2, 9) for kind in RUNNING), restless("yard", 9, 0.5)):  # compiled, loaded
         pass
     time.sleep(4.0)  # the last of them is still thought of
     gc.collect()
@@ -151,7 +167,8 @@ def main() -> None:
     lines = {"go_across": scenario("go_across"), "clicks on the course": clicks(asked.clicks, 0), "goals among twelve boxes": imported(asked.clicks, 0), "struck on stairs": strikes(asked.clicks, 0),
              "scripts' leaps aside": aside(asked.clicks, 0),
              **{f"{'walks' if speed < 2.0 else 'runs'} {'beside boxes' if things else 'in the open'}, {'a leap refused' if far else 'alone'}": never(speed, things, far)
-                for speed in (1.3, 3.0) for things in ((), AMONG) for far in (0.0, 60.0)}, **{f"a leap held at a run, {kind}": held(kind, max(asked.clicks // 2, 1), 0) for kind in RUNNING}}
+                for speed in (1.3, 3.0) for things in ((), AMONG) for far in (0.0, 60.0)}, **{f"a leap held at a run, {kind}": held(kind, max(asked.clicks // 2, 1), 0) for kind in RUNNING},
+             **{f"random hands, {stage}": restless(stage, 0, asked.clicks / 10) for stage in STAGES}}
     for name, ticks in lines.items():
         if name.startswith(asked.only):
             told(name, ticks)
