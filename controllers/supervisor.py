@@ -24,6 +24,9 @@ MOVED, PASSED, TURNED, ALONG = 0.05, 0.2, 0.1, 0.03
 """A leap that was refused is tried again from elsewhere: so far away [m], farther by so much for each m/s, turned by so much [rad], on other feet, or
 once he stands who was standing up. One along the way that somebody goes after the last [m]: it is asked of each moment anew, and the next may do."""
 
+HARDLY = 0.02
+"""And to a place that has moved by so much [m]."""
+
 
 ALONE = "characters come singly; a crowd that only walks is stepped by the locomotion itself"
 
@@ -63,9 +66,9 @@ class Asked:
         return was is not None and leap is not None and was.near(leap) and not was.same(leap)
 
     def still(self, state: CharacterState, intent: Intent) -> bool:
-        """Whether the same is asked from the same place: of the same stance, where somebody moves. What was refused is asked anew of a place that moved."""
+        """Whether the same is asked from the same place: of the same stance, where somebody moves. What was refused is asked anew of a place that moved by more than hardly."""
         was, leap, before = self.intent.leap, intent.leap, self.state
-        if was is None or leap is None or not (was.same(leap) if self.onward is None else was.near(leap)):
+        if was is None or leap is None or not (was.near(leap, HARDLY) if self.onward is None else was.near(leap)):
             return False
         if intent.around is not self.intent.around:
             here, place = state.ground[:2], leap.place

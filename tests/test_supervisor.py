@@ -225,9 +225,14 @@ def test_a_refused_leap_is_planned_once_until_something_changes():
     assert len(calls) == len(bids) == 1 and state.refused == "not from here" and isinstance(state.memory.asked, Asked)
     state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0]))), 1 / 60)
     assert len(calls) == 2, "another place"
+    for k in range(5):
+        state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0 + 0.004 * k]))), 1 / 60)
+    assert len(calls) == 2 and state.refused, "hardly another"
+    state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.025]))), 1 / 60)
+    assert len(calls) == 3, "which has crept on"
     state, _ = person.step(state, Intent(), 1 / 60)
     state, _ = person.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 8.0]))), 1 / 60)
-    assert len(calls) == 3 and state.refused, "asked anew"
+    assert len(calls) == 4 and state.refused, "asked anew"
 
 
 def test_who_was_refused_as_he_glided_is_asked_again_once_he_rests():

@@ -18,6 +18,8 @@ HIGHEST = 1e5
 DRIFTS = 0.3
 """A leap to a place that moves is found out about on and on, until the place is so far [m] from where it was at first. Found out about anew whenever it moved,
 it never would be."""
+LEVER = 1.0
+"""A heading to land in that turns counts as a place that moves by so much for each radian [m]."""
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:
@@ -84,20 +86,23 @@ class Leap:
         """Whether another wish is this one."""
         return self._off(other) == 0.0
 
-    def near(self, other: Leap | None) -> bool:
-        """Whether another wish is this one, to a place that may have moved a little meanwhile."""
-        return self._off(other) < DRIFTS
+    def near(self, other: Leap | None, within: float = DRIFTS) -> bool:
+        """Whether another wish is this one, to a place that may have moved by less than so much [m] meanwhile, or in a heading that turned."""
+        return self._off(other) < within
 
     def _off(self, other: Leap | None) -> float:
-        """How far [m] another wish's place is from this one's; infinite where the wishes differ in anything else, or one is to no place."""
-        if other is None or (self.airtime, self.slack, self.heading, self.on, self.stays, self.along) != (other.airtime, other.slack, other.heading, other.on, other.stays, other.along):
+        """How far [m] another wish's place is from this one's, and how far its heading turned; infinite where the wishes differ in anything else, or one is to no place."""
+        if other is None or (self.airtime, self.slack, self.on, self.stays, self.along) != (other.airtime, other.slack, other.on, other.stays, other.along):
             return math.inf
+        turned = 0.0
+        if self.heading != other.heading:
+            turned = math.inf if self.heading is None or other.heading is None else LEVER * abs(math.remainder(self.heading - other.heading, math.tau))
         if self.place is None or other.place is None:
-            return 0.0 if self.place is other.place else math.inf
+            return turned if self.place is other.place else math.inf
         if np.array_equal(self.place, other.place):
-            return 0.0
+            return turned
         off = float(np.linalg.norm(self.place - other.place)) if self.place.shape == other.place.shape == (3,) else math.inf
-        return off if math.isfinite(off) else math.inf
+        return off + turned if math.isfinite(off) else math.inf
 
 
 @dataclass(frozen=True)

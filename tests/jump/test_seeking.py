@@ -119,3 +119,20 @@ def test_who_is_refused_a_place_that_moves_is_told_why_all_along(someone):
         state, _ = someone.step(state, Intent(leap=Leap(np.array([0.0, 0.0, 5.0 + 0.001 * n]))), 1 / 60)
         told.append(state.memory.refused)
     assert all(why.startswith("too far") for why in told[20:])
+
+
+@pytest.mark.parametrize("speed, far", [(0.7, 0.45), (0.9, 0.6)])
+def test_a_heading_that_turns_a_little_is_no_other_wish(someone, monkeypatch, speed, far):
+    """Whose course turned as he slowed down was asked all anew in every step, seventeen plans: a game stood still for seconds."""
+    wish, state, plans, plan, made, stances = np.array([speed, 0.0, 0.0]), someone.start(), [], reach.plan, [], 1
+    for _ in range(90):
+        state, _ = someone.step(state, Intent(wish), 1 / 60)
+    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    z = float(state.ground[1])
+    things = (Box((0.0, 0.125, z + far), (1.0, 0.25, 0.1)),)
+    for n in range(40):
+        after, _ = someone.step(state, Intent(wish, Leap(np.array([0.0, 0.0, z + far + 0.5]), slack=0.5, heading=0.0003 * n), around=things), 1 / 60)
+        stances, state = stances + (not np.array_equal(after.contacts, state.contacts)), after
+        made.append(len(plans))
+        plans.clear()
+    assert 0 < sum(count > 4 for count in made) <= stances < 6

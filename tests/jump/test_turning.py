@@ -125,4 +125,11 @@ def test_who_runs_turns_a_little_only(jump, running):
 
 def test_another_heading_is_another_wish():
     assert Leap(None).same(Leap(None)) and not Leap(None).same(Leap(None, heading=0.0))
-    assert Leap(None, heading=1.0).same(Leap(None, heading=1.0))
+    assert Leap(None, heading=1.0).same(Leap(None, heading=1.0)) and not Leap(None, heading=1.0).same(Leap(None, heading=1.001))
+
+
+@pytest.mark.parametrize("place", [None, np.array([0.0, 0.0, 1.0])])
+def test_one_that_turns_a_little_is_near(place):
+    """Also past half a turn."""
+    assert Leap(place, heading=np.pi - 0.01).near(Leap(place, heading=-np.pi + 0.01)) and not Leap(place, heading=1.0).near(Leap(place, heading=1.4))
+    assert not Leap(place, heading=1.0).near(Leap(place)) and not Leap(place, heading=1.0).near(Leap(np.array([0.0, 0.0, 1.4]), heading=1.0))
