@@ -94,9 +94,9 @@ class Leap:
         """How far [m] another wish's place is from this one's, and how far its heading turned; infinite where the wishes differ in anything else, or one is to no place."""
         if other is None or (self.airtime, self.slack, self.on, self.stays, self.along) != (other.airtime, other.slack, other.on, other.stays, other.along):
             return math.inf
-        turned = 0.0
-        if self.heading != other.heading:
-            turned = math.inf if self.heading is None or other.heading is None else LEVER * abs(math.remainder(self.heading - other.heading, math.tau))
+        turned = 0.0 if self.heading == other.heading else math.inf
+        if turned and self.heading is not None and other.heading is not None and math.isfinite(self.heading - other.heading):
+            turned = LEVER * abs(math.remainder(self.heading - other.heading, math.tau))
         if self.place is None or other.place is None:
             return turned if self.place is other.place else math.inf
         if np.array_equal(self.place, other.place):

@@ -133,3 +133,9 @@ def test_one_that_turns_a_little_is_near(place):
     """Also past half a turn."""
     assert Leap(place, heading=np.pi - 0.01).near(Leap(place, heading=-np.pi + 0.01)) and not Leap(place, heading=1.0).near(Leap(place, heading=1.4))
     assert not Leap(place, heading=1.0).near(Leap(place)) and not Leap(place, heading=1.0).near(Leap(np.array([0.0, 0.0, 1.4]), heading=1.0))
+
+
+@pytest.mark.parametrize("heading", [np.inf, -np.inf, np.nan])
+def test_a_heading_that_is_none_is_near_no_other(heading):
+    """It is refused in words, also where another was asked before."""
+    assert not Leap(None, heading=1.0).near(Leap(None, heading=heading)) and not Leap(None, heading=heading).near(Leap(None, heading=1.0))
