@@ -15,6 +15,7 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -109,19 +110,21 @@ def wished(state: Any, yaw: float, place: tuple[float, float], first: bool, *, r
     return Wish(move=move, run=run, jump=jump, strafe=strafe, turn=turn, pressed=pressed if first else ()).rounded()
 
 
-def played(stage: Sequence[Prop], seed: int, steps: int) -> tuple[Any, list[Any], list[str]]:
-    """A person, the states after so many steps of play, and what hands did in each."""
-    rng, who = np.random.default_rng(seed), person()
-    line, states, did = Timeline(begin(World((Character("A", who, who.start()),), tuple(stage)), 1)), [], []
+def playing(who: Any, stage: Sequence[Prop], seed: int) -> Iterator[tuple[Any, str]]:
+    """The state of a person before each step of play, without end, and what hands do in it. A step is made as the next is asked for."""
+    rng, line = np.random.default_rng(seed), Timeline(begin(World((Character("A", who, who.start()),), tuple(stage)), 1))
     for name, lasts, place, how in deeds(rng, stage):
         for tick in range(max(1, round(lasts / DT))):
-            if len(states) == steps:
-                return who, states, did
             state = line.now.after.characters[0].state
-            states.append(state)
-            did.append(name)
+            yield state, name
             line.advance((wished(state, line.now.players[0].camera.yaw, place, tick == 0, **how),))
-    raise AssertionError("hands rest without end")
+
+
+def played(stage: Sequence[Prop], seed: int, steps: int) -> tuple[Any, list[Any], list[str]]:
+    """A person, the states after so many steps of play, and what hands did in each."""
+    who = person()
+    states, did = zip(*islice(playing(who, stage, seed), steps))
+    return who, list(states), list(did)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """Measure how long a tick takes that sends somebody: a scenario over several levels, clicks in the game, a call of the import; that in which somebody is struck on stairs and falls; a script's, of
 who walks or runs and is told to leap to a place aside; a leap that is asked for in every step and refused; hands that hold a leap as they run at gaps, boxes and hurdles;
-random hands of `hands.py`, which leap at whatever they head for.
+random hands of `hands.py`, which leap at whatever they head for, for a tenth of so many minutes as there are clicks.
 
     python scripts/measure/ticks.py [--clicks 40] [--only scripts]
 
@@ -15,13 +15,13 @@ import gc
 import os
 import time
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, islice
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from _struck_rooms import room
-from hands import STAGES, deeds, wished
+from hands import STAGES, playing
 from run_ups import RUNNING, running_stage
 
 from gambol.controllers.contract import Goal, Intent, Leap, Strike
@@ -141,16 +141,8 @@ def held(kind: str, count: int, seed: int) -> Iterator[None]:
 
 def restless(stage: str, seed: int, minutes: float) -> Iterator[None]:
     """The ticks of a game that random hands play."""
-    rng, who = np.random.default_rng(seed), person()
-    things, ticks = STAGES[stage](seed), 0
-    line = Timeline(begin(World((Character("A", who, who.start()),), tuple(things)), 1))
-    for _, lasts, place, how in deeds(rng, things):
-        for tick in range(max(1, round(lasts * RATE))):
-            line.advance((wished(line.now.after.characters[0].state, line.now.players[0].camera.yaw, place, tick == 0, **how),))
-            yield
-        ticks += max(1, round(lasts * RATE))
-        if ticks > 60 * RATE * minutes:
-            return
+    for _ in islice(playing(person(), STAGES[stage](seed), seed), round(60 * RATE * minutes) + 1):
+        yield
 
 
 def main() -> None:
