@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 
 from ..compiled import kernel
 
@@ -43,31 +42,30 @@ def relative_kernel(parent, child, out):
 
 
 @kernel
-def quaternion_kernel(matrix, out):
-    """Write a quaternion (4,) x, y, z, w of a rotation matrix (3, 3), of any length, by its largest part (Shepperd 1978)."""
-    m, q = matrix, out
+def quaternion_of(m):
+    """The quaternion x, y, z, w of a rotation matrix (3, 3), of any length, by its largest part (Shepperd 1978)."""
     trace = m[0, 0] + m[1, 1] + m[2, 2]
     if trace > 0.0:
-        q[3] = 1.0 + trace
-        q[0], q[1], q[2] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
-    else:
-        i = 0
-        if m[1, 1] > m[0, 0]:
-            i = 1
-        if m[2, 2] > m[i, i]:
-            i = 2
-        j, k = (i + 1) % 3, (i + 2) % 3
-        q[i] = 1.0 + m[i, i] - m[j, j] - m[k, k]
-        q[j], q[k], q[3] = m[j, i] + m[i, j], m[k, i] + m[i, k], m[k, j] - m[j, k]
+        return 1.0 * (m[2, 1] - m[1, 2]), 1.0 * (m[0, 2] - m[2, 0]), 1.0 * (m[1, 0] - m[0, 1]), 1.0 + trace
+    if m[2, 2] > max(m[0, 0], m[1, 1]):
+        return 1.0 * (m[0, 2] + m[2, 0]), 1.0 * (m[1, 2] + m[2, 1]), 1.0 + m[2, 2] - m[0, 0] - m[1, 1], 1.0 * (m[1, 0] - m[0, 1])
+    if m[1, 1] > m[0, 0]:
+        return 1.0 * (m[0, 1] + m[1, 0]), 1.0 + m[1, 1] - m[2, 2] - m[0, 0], 1.0 * (m[1, 2] + m[2, 1]), 1.0 * (m[0, 2] - m[2, 0])
+    return 1.0 + m[0, 0] - m[1, 1] - m[2, 2], 1.0 * (m[0, 1] + m[1, 0]), 1.0 * (m[0, 2] + m[2, 0]), 1.0 * (m[2, 1] - m[1, 2])
+
+
+@kernel
+def quaternion_kernel(matrix, out):
+    """Write it (4,)."""
+    out[0], out[1], out[2], out[3] = quaternion_of(matrix)
 
 
 @kernel
 def log_kernel(matrix, out):
     """Write the rotation vector (3,) [rad], at most π long, of a rotation matrix (3, 3): exact up to half a turn."""
-    q = np.empty(4)
-    quaternion_kernel(matrix, q)
-    if q[3] < 0.0:
-        q = -q
-    sine = math.sqrt(q[0] ** 2 + q[1] ** 2 + q[2] ** 2)
-    scale = 2.0 / q[3] if sine < 1e-12 * abs(q[3]) else 2.0 * math.atan2(sine, q[3]) / sine
-    out[0], out[1], out[2] = scale * q[0], scale * q[1], scale * q[2]
+    x, y, z, w = quaternion_of(matrix)
+    if w < 0.0:
+        x, y, z, w = -x, -y, -z, -w
+    sine = math.sqrt(x ** 2 + y ** 2 + z ** 2)
+    scale = 2.0 / w if sine < 1e-12 * w else 2.0 * math.atan2(sine, w) / sine
+    out[0], out[1], out[2] = scale * x, scale * y, scale * z

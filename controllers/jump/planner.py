@@ -6,16 +6,15 @@ follow from where the feet are, and in the air the turning of the whole body fol
 
 from __future__ import annotations
 
+from functools import cached_property
+from typing import NamedTuple
+
 import numpy as np
 
-from .body import Physique, Start, hermite, landing_feet, momentum_kernel, monotone, striding_feet, turns, vectors
-from .motion import HEEL, SAME, STRAIGHTEST, Path, Plan, Pushing, depths, flight_kernel, lifts, spread
+from .body import Physique, Start, landing_feet, momentum_kernel, striding_feet, turns, vectors
+from .motion import COLUMNS, HEEL, SAME, Path, Plan, Pushing, depths, flight_kernel, flying_legs_kernel, lifts, spread
 from .prior import BETWEEN, EACH, LEGS
 
-LEAVES = np.array([1.0, 0.55, 0.2, 0.0, 0.0, 0.0])
-"""How much is left in the air, from row to row, of what legs differed by from recorded ones as they left; as they land, the other way round."""
-SWINGS_ON = 0.15
-"""So long at most [s] legs go on in the air as the push swung them, and begin to give before they touch down."""
 ROUNDS, CLOSE = 8, 0.02
 """At most so many flights are tried until the body lands this upright [rad]."""
 MOST_TURN, MOST_GAIN = 0.7, 2.5
@@ -38,19 +37,35 @@ def plan(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: 
 
     Checks nothing: see `reach`.
     """
+    return drafted(physique, start, way, place, floor).plan()
+
+
+def drafted(physique: Physique, start: Start, way: Path, place: np.ndarray, floor: float) -> Draft:
+    """The same, to be planned: its flight can be looked at first."""
     place = np.asarray(place, float)
     landing = (landing_feet(place, start.lands, physique.tables, start.lands_on) if way.lands is None
                else striding_feet(place, start.lands, physique.tables, way.lands, start.lands_on))
     planted = start.planted(floor, physique.tables)
-    return _Draft(physique, start, way, planted, landing).plan()
+    return Draft(physique, start, way, planted, landing)
 
 
-class _Draft(Pushing):
+class Turning(NamedTuple):
+    """How a body turns in the air, found along every third pose. wanted: (3, 3) how it shall come down. spun, still: (3, 3), (3,) the momentum that a spin of the pelvis at take-off gives
+    [kg m²/s over rad/s], beside what it has without one. momentum: (3,) with which it comes down so. roots: (N, 3) [m], local: (N, J, 3, 3) the poses."""
+
+    wanted: np.ndarray
+    spun: np.ndarray
+    still: np.ndarray
+    momentum: np.ndarray
+    roots: np.ndarray
+    local: np.ndarray
+
+
+class Draft(Pushing):
     """One plan in the making: what its parts share."""
 
     def plan(self) -> Plan:
         """Everything that is left to do, in order."""
-        self._prepare_air()
         spin = self._fly()
         self._stand(spin, 0)
         after, landed, heels, through = self._land()
@@ -73,12 +88,14 @@ class _Draft(Pushing):
             mass * np.concatenate([self.forces, np.zeros((len(flying), 3)), landed[4] - g]),
             contacts, self.off, self.leave, self.down, self.down + self.lowest, self.down + through, self.landing, self.momentum.copy(), way)
 
-    def _fly(self) -> np.ndarray:
-        """Find the spin (3,) at take-off with which the body lands upright, and fly with it.
+    @cached_property
+    def turning(self) -> Turning:
+        """How the body turns in the air: every third pose of its flight, known at half the cost of a plan.
 
         Without angular momentum a body only turns against its limbs, by less than half a turn. From there on the momentum is
         found by Broyden's method, in steps that turn it a little: none leads round by a somersault.
         """
+        self._prepare_air()
         self.roots[-3:] = self.centres[-3:]  # a guess
         wanted = self._upright(self.air_angles[-1:, 0], self.down)[0]
         time = self.way.airtime
@@ -94,7 +111,7 @@ class _Draft(Pushing):
             self.momentum[:] = gain @ [0.0, self.way.turned(self.down) - self.way.turned(self.leave), 0.0]
         change = before = np.zeros(3)
         for _ in range(ROUNDS):
-            flown = self._flight(wanted, 1e-4, COARSE)
+            roots, flown = self._flight(wanted, 1e-4, COARSE)
             miss = vectors(wanted @ flown[-1, 0].T)
             if np.abs(miss).max() < CLOSE:
                 break
@@ -107,7 +124,12 @@ class _Draft(Pushing):
             bound = MOST_GAIN * float(np.linalg.norm(spun @ step)) / time
             change *= min(1.0, bound / max(float(np.linalg.norm(change)), 1e-12))
             self.momentum[:] += change
-        meant, spin = self.momentum.copy(), np.zeros(3)
+        return Turning(wanted, spun, still, self.momentum.copy(), roots, flown)
+
+    def _fly(self) -> np.ndarray:
+        """Fly with the spin (3,) at take-off with which the body lands upright, and find it."""
+        wanted, spun, still, meant, *_ = self.turning
+        spin = np.zeros(3)
         self.momentum[:] = still
         for _ in range(TAKES):  # nearly linear, but for a leg that is nearly straight
             spin = spin + np.linalg.solve(spun, meant - self.momentum)
@@ -127,7 +149,7 @@ class _Draft(Pushing):
     def _reach(self, wanted: np.ndarray) -> None:
         """Fly with legs that reach for where this very body comes down, upright as wanted (3, 3): that changes a little how it turns."""
         landed, beyond, off = wanted, BEYOND, None
-        flown = self._flight(landed, 1e-4, COARSE)
+        _, flown = self._flight(landed, 1e-4, COARSE)
         for _ in range(ROUNDS):
             before, off = off, vectors(landed.T @ flown[-1, 0])
             if before is not None:
@@ -136,7 +158,7 @@ class _Draft(Pushing):
                 change = before - off
                 beyond = float(np.clip(beyond * (before @ change) / max(change @ change, 1e-12), 0.8, 2.5))
             landed = landed @ turns(beyond * off)
-            flown = self._flight(landed, 1e-9)
+            _, flown = self._flight(landed, 1e-9)
 
     def _leave(self, spin: np.ndarray) -> None:
         """Take off with a spin (3,): the last poses on the floor, and the momentum that they have."""
@@ -145,37 +167,25 @@ class _Draft(Pushing):
         momentum_kernel(self.body, *self._parts(self.roots[-2], self.local[-2]), *self._parts(self.roots[-1], self.local[-1]),
                         step, self.momentum, np.empty((3, 3)))
 
-    def _flight(self, landed: np.ndarray, tolerance: float, every: int = 1) -> np.ndarray:
-        """The flight, its legs reaching as if it came down turned `landed` (3, 3): its poses (N, J, 3, 3), of `every` so many
+    def _flight(self, landed: np.ndarray, tolerance: float, every: int = 1) -> tuple[np.ndarray, np.ndarray]:
+        """The flight, its legs reaching as if it came down turned `landed` (3, 3): where its pelvis is (N, 3) [m] and its poses (N, J, 3, 3), of `every` so many
         only."""
         step = self.times[-1] - self.times[-2]
-        air, arc, roots = (np.ascontiguousarray(part[::every]) for part in (self.air, self.arc, self.air_roots))
-        air[:, self.legs] = self._legs_in_flight(step, *self._touching(landed), self.flying[::every])
+        air, arc, roots, times = (np.ascontiguousarray(part[::every]) for part in (self.air, self.arc, self.air_roots, self.flying))
+        air[:, self.legs] = self._legs_in_flight(step, *self._touching(landed), times)
         air[0] = self.local[-1]
         rate = vectors(self.local[-1, 0] @ self.local[-2, 0].T) / step
-        flight_kernel(self.body, arc, air, rate, self.momentum, self.flying[every], roots, tolerance)
-        return air
+        flight_kernel(self.body, arc, air, rate, self.momentum, times[1], roots, tolerance)
+        return roots, air
 
     def _legs_in_flight(self, step: float, end: np.ndarray, bending: np.ndarray, times: np.ndarray) -> np.ndarray:
         """The legs' local rotations (N, 8, 3, 3) at times (N,) [s] in the air: as recorded, out of the push and to how they
-        touch down, with `bending` (8, 3) [rad/s]."""
-        ids, rows = self.legs, self.way.keys[2 * BETWEEN:3 * BETWEEN + 1, LEGS:]
-        before, last, reach = vectors(self.local[-2, ids]), vectors(self.local[-1, ids]), vectors(end[ids])
-        keys = self.due[2 * BETWEEN:3 * BETWEEN + 1] - self.leave
-        share = np.linspace(0.0, 1.0, BETWEEN + 1)[:, None, None]
-        values = (1.0 - share) * last + share * reach  # what was not recorded goes straight
-        bent = np.array([[4 * side + n for n in range(EACH)] for side in (0, 1)]).ravel()
-        values[:, bent, 0] = rows + LEAVES[:, None] * (last[bent, 0] - rows[0]) + LEAVES[::-1, None] * (reach[bent, 0] - rows[-1])
-        values[:, [1, 5], 0] = np.maximum(values[:, [1, 5], 0], STRAIGHTEST)
-        values[0], values[-1] = last, reach
-        slopes, rates, lasts = monotone(keys, values), np.stack([(last - before) / step, bending]), min(SWINGS_ON, keys[1])
-        for knee in (1, 5):  # that does not bend back
-            rates[0, knee, 0] = max(rates[0, knee, 0], -3.0 * (last[knee, 0] - 0.5 * STRAIGHTEST) / lasts)
-            rates[1, knee, 0] = min(rates[1, knee, 0], 3.0 * (reach[knee, 0] - 0.5 * STRAIGHTEST) / lasts)
-        # what is faster than the way to the next row is spent soon, and gained late, however long a flight takes: a cubic without a value at either end
-        gone, left = (np.minimum(part / lasts, 1.0)[:, None, None] for part in (times, self.way.airtime - times))
-        more = (rates[0] - slopes[0]) * gone * (1.0 - gone)**2 - (rates[1] - slopes[-1]) * left * (1.0 - left)**2
-        bends = hermite(keys, values, slopes, times) + lasts * more
+        touch down (8, 3) [rad], with `bending` (8, 3) [rad/s]."""
+        rows, keys = np.ascontiguousarray(self.way.keys[2 * BETWEEN:3 * BETWEEN + 1, LEGS:]), self.due[2 * BETWEEN:3 * BETWEEN + 1] - self.leave
+        before, last = vectors(self.local[-2:, self.legs]).reshape(2, COLUMNS)
+        bends = np.empty((len(times), COLUMNS))
+        flying_legs_kernel(times, self.way.airtime, keys, rows, before, last, step, end.ravel(), bending.ravel(), bends)
+        bends = bends.reshape(len(times), 2, 4, 3)
         if self.lifts.any():
-            bends.reshape(-1, 2, 4, 3)[:, :, :EACH, 0] += spread(times, self.way.airtime, self.lifts)
-        return turns(bends)
+            bends[:, :, :EACH, 0] += spread(times, self.way.airtime, self.lifts)
+        return turns(bends).reshape(len(times), -1, 3, 3)

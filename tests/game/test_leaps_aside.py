@@ -137,10 +137,10 @@ def at_a_run(someone, speed):
 def test_no_step_of_who_thinks_of_a_leap_aside_has_more_to_work_out_than_a_few_paths_or_a_plan_and_it_is_the_same_again(someone, monkeypatch, speed, aside, far):
     """It was found out at once, in a quarter to one and a half seconds: a live theatre stood still. Nor does it matter what is known already of a leap that was thought of before."""
     paths, plans, steps = [], [], []
-    path, plan, step, held = arcs.grounded, reach.plan, type(someone.parts["locomotion"]).step, Script.held
+    path, plan, step, held = arcs.grounded, reach.drafted, type(someone.parts["locomotion"]).step, Script.held
     most = []
     monkeypatch.setattr(arcs, "grounded", lambda *given: paths.append(1) or path(*given))
-    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    monkeypatch.setattr(reach, "drafted", lambda *given: plans.append(1) or plan(*given))
     monkeypatch.setattr(type(someone.parts["locomotion"]), "step", lambda *given: steps.append(1) or step(*given))
 
     def counted(*given):

@@ -196,8 +196,8 @@ def test_who_thought_of_his_leap_makes_one_plan_as_it_goes_off(library, monkeypa
     state, intent = who.active(state)[1], Intent(leap=replace(after.memory.memory.asked, how=None), around=things)
     leap = Jumper().found(state, intent)
     elsewhere = replace(state, pose=Pose(state.pose.root + np.float32(1e-5), state.pose.rotations))
-    plans, plan = [], reach.plan
-    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(plan(*given)) or plans[-1])
+    plans, plan = [], reach.drafted
+    monkeypatch.setattr(reach, "drafted", lambda *given: plans.append(plan(*given)) or plans[-1])
     counts = {}
     for name, now, asked in (("all", state, intent), ("found", state, replace(intent, leap=leap)), ("elsewhere", elsewhere, replace(intent, leap=leap))):
         Jumper().seek(now, asked)  # one who remembers nothing

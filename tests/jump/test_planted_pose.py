@@ -1,6 +1,7 @@
 """A posture keeps its promises: the centre of mass where it is wanted, feet where they stand, bones as long as they are."""
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -9,7 +10,7 @@ from gambol.controllers.body.anatomy import centre_of_mass
 from gambol.controllers.jump.body import carriage as style
 from gambol.controllers.jump.body.balance import FLEX
 from gambol.controllers.jump.body.dynamics import Physique
-from gambol.controllers.jump.body.planted_pose import STRAIGHT, nearest_kernel, stand_kernel
+from gambol.controllers.jump.body.planted_pose import STRAIGHT, ankle_kernel, heel_kernel, lying_kernel, nearest_kernel, stand_kernel
 from gambol.controllers.jump.body import landing_feet, measures
 
 BODIES = (Physique(), Physique(30.0, 1.25), Physique(110.0, 1.85, 0.8, 0.8, "female"))
@@ -62,3 +63,24 @@ def test_knees_bend_backward_only_and_don_t_cross():
             knee = local[skeleton.index(name + "Leg")]
             assert np.arctan2(knee[2, 1], knee[1, 1]) > 0.0
         assert positions[skeleton.index("LeftLeg"), 0] - positions[skeleton.index("RightLeg"), 0] > 0.1
+
+
+@given(yaw=st.floats(-3.0, 3.0), pitch=st.floats(-0.1, 0.6), ahead=st.floats(-0.4, 0.4), aside=st.floats(-0.2, 0.2), high=st.floats(0.6, 1.05), reach=st.floats(0.7, 0.95),
+       slope=st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3)))
+def test_a_heel_rises_as_little_as_it_must(yaw, pitch, ahead, aside, high, reach, slope):
+    """Looked for in small steps: the first pitch with which the ankle is as near to the hip as the leg reaches."""
+    body = Physique().tables
+    foot, hip = np.array([0.0, 0.1, 0.0, yaw, pitch, 1.0, *slope, 0.0]), np.array([aside, high, ahead])
+
+    def apart(pitch):
+        turned, ankle = np.empty((3, 3)), np.empty(3)
+        lying_kernel(foot, pitch, turned)
+        ankle_kernel(body, foot, turned, ankle)
+        return np.linalg.norm(ankle - hip)
+    most = max(pitch, min(nearest_kernel(body, hip, foot), 1.25))
+    if apart(pitch) <= reach:
+        return
+    found = heel_kernel(body, hip, foot, reach, most)
+    assert pitch <= found <= most
+    assert found == most or apart(found) == pytest.approx(reach, abs=1e-9)
+    assert all(apart(low) > reach - 1e-9 for low in np.linspace(pitch, found, 9)[:-1])

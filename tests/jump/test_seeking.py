@@ -71,8 +71,8 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
     jump, intent, state = someone.parts["jump"], Intent(leap=Leap(np.array(place)), around=things), someone.start()
     for _ in range(60 * crouches):
         state, _ = someone.step(state, Intent(aim=intent.leap, around=things), 1 / 60)
-    plans, plan = [], reach.plan
-    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    plans, plan = [], reach.drafted
+    monkeypatch.setattr(reach, "drafted", lambda *given: plans.append(1) or plan(*given))
     states = [state]
     for _ in range(60):
         before, state = state, someone.step(state, intent, 1 / 60)[0]
@@ -98,8 +98,8 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
 @pytest.mark.parametrize("speed", [1e-4, 0.1, 0.5])
 def test_a_place_that_moves_is_leapt_to_where_it_is_then(someone, monkeypatch, speed, crouches):
     """It was sought anew in each step, so nobody ever leapt to it, nor was told why."""
-    state, plans, plan, top = someone.start(), [], reach.plan, 0.4
-    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    state, plans, plan, top = someone.start(), [], reach.drafted, 0.4
+    monkeypatch.setattr(reach, "drafted", lambda *given: plans.append(1) or plan(*given))
     for n in range(60 * (1 + crouches)):
         place = np.array([0.0, top, 1.3 + speed * (n / 60 - crouches)])
         things, leap = (Box((0.0, top / 2, place[2]), (1.0, top, 1.0)),), Leap(place)
@@ -124,10 +124,10 @@ def test_who_is_refused_a_place_that_moves_is_told_why_all_along(someone):
 @pytest.mark.parametrize("speed, far", [(0.7, 0.45), (0.9, 0.6)])
 def test_a_heading_that_turns_a_little_is_no_other_wish(someone, monkeypatch, speed, far):
     """Whose course turned as he slowed down was asked all anew in every step, seventeen plans: a game stood still for seconds."""
-    wish, state, plans, plan, made, stances = np.array([speed, 0.0, 0.0]), someone.start(), [], reach.plan, [], 1
+    wish, state, plans, plan, made, stances = np.array([speed, 0.0, 0.0]), someone.start(), [], reach.drafted, [], 1
     for _ in range(90):
         state, _ = someone.step(state, Intent(wish), 1 / 60)
-    monkeypatch.setattr(reach, "plan", lambda *given: plans.append(1) or plan(*given))
+    monkeypatch.setattr(reach, "drafted", lambda *given: plans.append(1) or plan(*given))
     z = float(state.ground[1])
     things = (Box((0.0, 0.125, z + far), (1.0, 0.25, 0.1)),)
     for n in range(40):

@@ -12,7 +12,10 @@ from gambol.controllers.body import end_positions, forward_kinematics, sole_corn
 from gambol.controllers.contract import Intent, Leap, Unable
 from gambol.controllers.jump import Jump, Physique
 from gambol.controllers.jump.reach.feasibility import Refused
-from gambol.controllers.jump.reach.sweep import touch
+from gambol.controllers.jump.planner import drafted
+from gambol.controllers.jump.reach import reach
+from gambol.controllers.jump.reach.arcs import How
+from gambol.controllers.jump.reach.sweep import surely, touch
 from gambol.controllers.navigation import gap
 from gambol.game.scene.scene import Box
 
@@ -87,3 +90,23 @@ def test_nobody_is_tilted_much_whichever_way_it_jumps(jump, standing, way):
         air = (made.times >= made.take_off) & (made.times <= made.touch_down)
         assert np.degrees(np.arccos(made.local[air, 0, 1, 1].min())) < 35.0
         assert np.degrees(np.arccos(made.local[air, 0, 1, 1][-1])) < 35.0
+
+
+@pytest.mark.parametrize("far, high, at, deep", [(1.0, 0.6, 0.5, 0.2), (1.2, 0.9, 0.6, 0.3), (1.0, 0.25, 0.5, 0.2), (1.0, 1.2, 0.5, 0.2), (0.9, 0.3, 0.45, 0.05), (1.0, 0.1, 0.5, 0.1)])
+def test_what_a_flight_surely_touches_its_plan_touches(jump, standing, far, high, at, deep):
+    start, place, box = jump.start_of(standing), ahead(standing, far), Box((0.0, high / 2, at), (2.0, high, deep))
+    draft = drafted(jump.physique, start, jump.arc(start, place, 0.0, (), How(None, False, False, 0)).path, place, 0.0)
+    sure, found = surely(jump.physique, start, draft.turning, (box,)), touch(jump.physique, draft.plan(), (box,))
+    assert (sure is not None) == (deep >= 0.2), "what is thick is seen before the plan is finished"
+    if sure is not None:
+        assert found.reason == sure.reason and found.deep == pytest.approx(sure.deep, abs=0.01)
+
+
+@pytest.mark.parametrize("at, once", [(1.2, True), (1.3, True), (0.3, False), (0.55, False)])
+def test_who_would_land_with_his_legs_in_something_is_not_asked_to_come_another_way(jump, standing, monkeypatch, at, once):
+    """Whatever way he came, his knees would be in the box as he bends them; of what he would touch in the air that is not said."""
+    made, draft = [], reach.drafted
+    monkeypatch.setattr(reach, "drafted", lambda *given: made.append(1) or draft(*given))
+    found, why = jump.attempt(jump.start_of(standing), ahead(standing, 1.0), 0.0, None, (Box((0.0, 0.25, at), (2.0, 0.5, 0.1)),))
+    assert found is None and why.startswith("its legs would hit something")
+    assert (len(made) == 1) == once

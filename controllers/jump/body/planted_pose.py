@@ -77,6 +77,25 @@ def nearest_kernel(body, hip, foot):
 
 
 @kernel
+def heel_kernel(body, hip, foot, reach, high):
+    """With which pitch [rad], no less than a foot's (6,) or (8,) own and no more than `high`, its ankle comes as near as `reach` [m] to a hip (3,); `high` where with none.
+    The square of how far they are apart goes with the cosine of the pitch."""
+    flat, apart = np.empty((3, 3)), 0.0
+    lying_kernel(foot, 0.0, flat)
+    y, z = 0.0, 0.0
+    for i in range(3):
+        way = hip[i] - foot[i]
+        apart += way * way + body.toe[i] * body.toe[i] + 2.0 * way * flat[i, 0] * body.toe[0]
+        y += way * flat[i, 1]
+        z += way * flat[i, 2]
+    even, odd = y * body.toe[1] + z * body.toe[2], z * body.toe[1] - y * body.toe[2]
+    share = (apart - reach * reach) / (2.0 * math.hypot(even, odd))
+    if share > 1.0:
+        return high
+    return min(max(math.atan2(-odd, -even) - math.acos(max(share, -1.0)), foot[4]), high)
+
+
+@kernel
 def pole_kernel(body, side, yaw, positions, orientations, out):
     """Write whither (3,) a knee points of itself: between pelvis and a foot that points along `yaw` [rad]."""
     hip = body.hip[side]
@@ -97,9 +116,11 @@ def across_kernel(axis, vector):
 @kernel
 def swivel_kernel(hip, ankle, angle, pole):
     """Turn a pole (3,) about the line from hip to ankle (3,) by an angle [rad]; what of it is along that is left out."""
-    axis = (ankle - hip) / distance_kernel(hip, ankle)
-    across_kernel(axis, pole)
-    pole[:] = math.cos(angle) * pole + math.sin(angle) * np.cross(axis, pole)
+    far = distance_kernel(hip, ankle)
+    x, y, z = (ankle[0] - hip[0]) / far, (ankle[1] - hip[1]) / far, (ankle[2] - hip[2]) / far
+    along, c, s = x * pole[0] + y * pole[1] + z * pole[2], math.cos(angle), math.sin(angle)
+    px, py, pz = pole[0] - along * x, pole[1] - along * y, pole[2] - along * z
+    pole[0], pole[1], pole[2] = c * px + s * (y * pz - z * py), c * py + s * (z * px - x * pz), c * pz + s * (x * py - y * px)
 
 
 @kernel
@@ -125,11 +146,11 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
     """
     hip = body.hip[side]
     knee, ankle, ball = hip + 1, hip + 2, hip + 3
-    turned, at, pole, heading = np.empty((3, 3)), np.empty(3), np.empty(3), np.array([math.sin(foot[3]), 0.0, math.cos(foot[3])])
+    turned, at, pole = np.empty((3, 3)), np.empty(3), np.empty(3)
     soft = SOFT * max(foot[5] - 1.0, 0.0) * (body.thigh + body.shank)
     root = positions[hip]
     pelvis = orientations[0]
-    uphill = math.atan(foot[6] * heading[0] + foot[7] * heading[2]) if foot.shape[0] > 6 else 0.0
+    uphill = math.atan(foot[6] * math.sin(foot[3]) + foot[7] * math.cos(foot[3])) if foot.shape[0] > 6 else 0.0
     for _ in range(4):
         lying_kernel(foot, foot[4], turned)
         ankle_kernel(body, foot, turned, at)
@@ -138,17 +159,8 @@ def leg_kernel(body, side, foot, flex, local, positions, orientations):
         if soft > 0.0 and beyond > 0.0:
             reach -= soft * math.exp(-beyond / soft)
         if foot[5] > 0.0 and distance_kernel(root, at) > reach:
-            low, high = foot[4], max(foot[4], min(nearest_kernel(body, root, foot) + uphill, 1.25))
-            for _ in range(40):
-                middle = 0.5 * (low + high)
-                lying_kernel(foot, middle, turned)
-                ankle_kernel(body, foot, turned, at)
-                if distance_kernel(root, at) > reach:
-                    low = middle
-                else:
-                    high = middle
-            foot[4] = high
-            lying_kernel(foot, high, turned)
+            foot[4] = heel_kernel(body, root, foot, reach, max(foot[4], min(nearest_kernel(body, root, foot) + uphill, 1.25)))
+            lying_kernel(foot, foot[4], turned)
             ankle_kernel(body, foot, turned, at)
         pole_kernel(body, side, foot[3], positions, orientations, pole)
         if foot.shape[0] > 8 and foot[8] != 0.0:

@@ -8,10 +8,11 @@ from functools import partial
 import numpy as np
 
 from ...body import yaw
-from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, stand_kernel, standing, turns, vectors
+from ..body import FLEX, TOES_DOWN, Physique, Start, carriage, hermite, measures, parts_kernel, place_kernel, soles, standing, turns, vectors
 from ..prior import BETWEEN, EACH, LEGS
+from .flying_legs import touching_kernel
 from .footing import FADE, MOMENT, faded
-from .ground_kernels import FREE, carry_on_kernel, ground_kernel
+from .ground_kernels import FREE, carry_all_kernel, ground_kernel
 from .landing import TIME, absorb
 from .looking import Look
 from .path_estimate import Path
@@ -38,8 +39,8 @@ POINTS = 0.08, 2.5, 0.2
 ankles take over from knees."""
 HEEL = 0.03
 """A heel that is raised by more has left the floor [rad]."""
-MEET = 0.5, 14.0
-"""How much of the speed that the ground bends them with legs have as they touch down, and at most [rad/s]."""
+SOON = 1.0 / 240.0
+"""How legs bend as they touch down is told from how they are and from how they will be so soon after [s]."""
 STEADY = 0.12
 """Half-life with which the pelvis loses the turn it landed with [s]."""
 LOWEST = 0.06, 0.45
@@ -146,9 +147,14 @@ class Airborne:
         self.arc = way.leave + way.velocity * t + 0.5 * self.gravity * t**2
         self.air_angles = self.carriage(self.leave + self.flying)
         self.air = np.tile(np.eye(3), (len(t), self.count, 1, 1))
-        for angles, left, local in zip(self.air_angles, self._left_over(self.leave + self.flying), self.air):
-            carry_on_kernel(angles, self.joints, left, local)
+        carry_all_kernel(self.air_angles, self.joints, self._left_over(self.leave + self.flying), self.air)
         self.air_roots, self.momentum = np.empty((len(t), 3)), np.empty(3)
+        touches = np.array([0.0, SOON])
+        self.comes_down, self.posed = standing(2, self.start.lands_on), np.stack([self.air[-1], self.air[-1]])
+        self.comes_down[..., :4], self.comes_down[..., 4], self.comes_down[..., 5] = self.landing[:, :4], self._toes_down(touches)[:, None], 0.0
+        self._free(self.comes_down)
+        if self.way.lands is not None:
+            self.posed[:, self.swings] = self.swung(touches)
 
     def _miss(self, wanted: np.ndarray, air: np.ndarray) -> np.ndarray:
         """The rotation vector (3,) [rad] from how a body in these poses (N, J, 3, 3) came down to how it should, somersaults
@@ -169,23 +175,10 @@ class Airborne:
         return out
 
     def _touching(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The local rotations (J, 3, 3) at touch-down, the body turned `turn` (3, 3), and how fast the legs
-        (8, 3) bend then [rad/s]: they begin to give before the floor makes them."""
-        step, feet = 1.0 / 240.0, standing(1, self.start.lands_on)[0]
-        positions, turned = np.empty((self.count, 3)), np.empty((self.count, 3, 3))
-        posed = np.stack([self.air[-1], self.air[-1]])
-        posed[:, 0] = turn
-        feet[:, :4], feet[:, 5] = self.landing[:, :4], 0.0
-        centre = self.way.land.copy()
-        root = centre - [0.0, 0.05, 0.0]
-        self._free(feet)
-        posed[:, self.swings] = self.swung(np.array([0.0, step])) if self.way.lands is not None else posed[:, self.swings]
-        for k, pitch in enumerate(self._toes_down([0.0, step])):
-            feet[:, 4] = pitch
-            stand_kernel(self.body, centre, feet, self.flex, root, posed[k], positions, turned)
-            centre += step * self.way.falling
-        bent = vectors(posed[:, self.legs])
-        return posed[0], np.clip(MEET[0] / step * (bent[1] - bent[0]), -MEET[1], MEET[1])
+        """How the legs are turned (8, 3) [rad] at touch-down, the body turned `turn` (3, 3), and how fast they bend then (8, 3) [rad/s]."""
+        end, bending = np.empty((len(self.legs), 3)), np.empty((len(self.legs), 3))
+        touching_kernel(self.body, self.flex, turn, self.way.land, self.way.falling, SOON, self.comes_down, self.posed, self.legs, end, bending)
+        return end, bending
 
     def _land(self):
         """Touch-down to standing: times (M,) and, for each, roots, local rotations, and the centre of mass's place,

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...body import Skeleton, end_positions, forward_kinematics, sole_corners
-from ...navigation import clearance, gap
+from ...compiled import kernel
+from ...navigation import clearance, gap, nearest_kernel
 from ..body import Physique
 
 NEAR = 1.3
@@ -58,3 +59,26 @@ def capsule_places(physique: Physique, positions: np.ndarray, turned: np.ndarray
         parts.append((part, begin[:, None] + np.linspace(0.0, 1.0, count)[:, None] * (stop - begin)[:, None], radius * size - GRAZE))
     widths = [places.shape[1] for _, places, _ in parts]
     return [part for part, _, _ in parts], widths, np.concatenate([places for _, places, _ in parts], 1), np.repeat([thick for _, _, thick in parts], widths)
+
+
+@kernel
+def deepest_kernel(every, thick, boxes, pillars, where, place):
+    """How deep [m] a body lies in a thing where it lies deepest in it, beyond how deep each of its places does at first; 0 where nowhere.
+
+    every: (N, P, 3) [m] its places, pose after pose, between which it is looked at half-way, too. thick: (P,) [m] it is there. boxes, pillars: of `solids_of`.
+    where: (2,) in which pose, and which of its places; place: (3,) [m], both are written.
+    """
+    deepest, allowed = 0.0, np.empty(every.shape[1])
+    for p in range(len(allowed)):
+        allowed[p] = max(thick[p] - nearest_kernel(every[0, p, 0], every[0, p, 1], every[0, p, 2], boxes, pillars), 0.0)
+    for n in range(1, len(every)):
+        for share in (0.5, 1.0):
+            for p in range(len(allowed)):
+                before, here = every[n - 1, p], every[n, p]
+                x, y, z = before[0] + share * (here[0] - before[0]), before[1] + share * (here[1] - before[1]), before[2] + share * (here[2] - before[2])
+                deep = thick[p] - nearest_kernel(x, y, z, boxes, pillars) - allowed[p]
+                if deep > deepest:
+                    deepest = deep
+                    where[0], where[1] = n, p
+                    place[0], place[1], place[2] = x, y, z
+    return deepest

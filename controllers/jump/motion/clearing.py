@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...body import sole_corners
-from ..body import Ledge, Physique, hermite, monotone, place_kernel, raised, rise
+from ...body import forward_kinematics, sole_corners
+from ..body import Ledge, Physique, hermite, monotone, raised, rise
 from ..prior import EACH
 from .ledge import over_lower
 from .swinging import FLEXED, LIFT
@@ -27,9 +27,7 @@ def depths(physique: Physique, roots: np.ndarray, local: np.ndarray, arc: np.nda
     its toes point down (N, 2). arc: (N, 3) [m] the centre of mass. left, landing: (2, 5) the feet as they stood and will stand, on floors that rise by slope and
     lands_on (2,) [m/m]. ledge: the edge between."""
     body = physique.tables
-    positions, turned = np.empty(local.shape[:-1]), np.empty(local.shape)
-    for root, pose, places, facing in zip(roots, local, positions, turned):
-        place_kernel(body, root, pose, places, facing)
+    positions, turned = forward_kinematics(physique.skeleton, roots, local)
     corners = sole_corners(physique.skeleton, positions, turned).reshape(len(roots), 2, -1, 3)
     floors = [feet[:, None, 1] - raised(body, way) + rise(corners[..., [0, 2]] - feet[:, None, [0, 2]], way) for feet, way in ((left, slope), (landing, lands_on))]
     away = np.linalg.norm(corners[..., [0, 2]] - left[:, None, [0, 2]], axis=-1)

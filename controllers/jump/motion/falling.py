@@ -87,7 +87,7 @@ class Falling(Airborne):
     def _fly(self, momentum: np.ndarray, landed: np.ndarray, tolerance: float) -> None:
         """The flight with an angular momentum (3,), the legs reaching as if the body came down turned `landed`."""
         ids, airtime = self.legs, self.way.airtime
-        now, end = self.start.rotations[ids], vectors(self._touching(landed)[0][ids])
+        now, end = self.start.rotations[ids], self._touching(landed)[0]
         step = self.flying[1]
         before = vectors(turns(-step * self.start.rates[ids]) @ now)
         now = vectors(now)

@@ -47,3 +47,10 @@ def carry_on_kernel(angles, joints, offsets, local):
             exp_kernel(offsets[j, 0], offsets[j, 1], offsets[j, 2], turn)
             carried[:] = local[j]
             product_kernel(turn, carried, local[j])
+
+
+@kernel
+def carry_all_kernel(angles, joints, offsets, local):
+    """The same of poses (N, J, 3, 3), carried by angles (N, 11), with what is left of the start (N, J, 3)."""
+    for n in range(len(angles)):
+        carry_on_kernel(angles[n], joints, offsets[n], local[n])

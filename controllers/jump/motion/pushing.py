@@ -11,6 +11,7 @@ from ..prior import BETWEEN, EACH, LEGS
 from .airborne import GROUND_RATE, Airborne
 from .clearing import ROWS as LIFT_ROWS
 from .descent import sinking
+from .flying_legs import STRAIGHTEST
 from .footing import FADE, MOMENT, RUNNERS_HEEL, faded, heels_rise, heels_up, settling, swivels
 from .going_slowly import FOLDS, GIVES, skipping, straight_through
 from .ground_kernels import FREE, ground_kernel
@@ -35,8 +36,6 @@ CLEARED, SOON = 12, 0.12
 """At so many moments a swing leg is looked at, lest its foot be in the floor; so soon [s] it clears it whose foot is still about to leave it."""
 HELD, RISES_ON = 13, 0.5
 """Where ankles can't keep heels down in the push is looked at so many times; from there they rise by so much of what others rise."""
-STRAIGHTEST = 0.06
-"""Knees of legs that swing are bent by this at least [rad]."""
 
 
 class Pushing(Airborne):

@@ -13,12 +13,12 @@ from ...contract import level
 from ...navigation import floor_at
 from ..body import FLAT, Physique, Start
 from ..motion import Plan, rolled, rolls, room
-from ..planner import plan
+from ..planner import drafted, plan
 from ..prior import Prior
 from .arcs import HEIGHTS, Arc, Arcs, How, following
 from .feasibility import STEEP, begins, meant, stopped, wrong
 from .seeking import PLAN, Pieces, counted, weighed, whole
-from .sweep import Touch, touch
+from .sweep import Touch, surely, touch
 
 GRID, FARTHEST = 0.02, 10.0
 """The nearest place is sought so finely [m], and no farther away than nobody leaps on Earth [m]."""
@@ -95,17 +95,17 @@ class Reach(Arcs):
         told, count, arcs = "", 0, self.arcs(start, place, floor, airtime, around)
         arc = yield from following(arcs)
         while arc is not None:
-            why, deep = arc.why, None
+            why, hit = arc.why, None
             if not why:
                 yield PLAN
-                made, why, deep = self._made(start, place, floor, around, arc)
+                made, why, hit = self._made(start, place, floor, around, arc)
                 if made is not None:
                     return Found(made, arc, place), ""
                 count += 1
             told = told or why
-            if count == tries:
+            if count == tries or hit is not None and hit.however:
                 break
-            arc = yield from following(arcs, deep)
+            arc = yield from following(arcs, hit and hit.deep)
         return None, told
 
     def again(self, how: How, start: Start, place: np.ndarray, floor: float, airtime: float | None, around: Sequence[Any]) -> Found | None:
@@ -121,12 +121,17 @@ class Reach(Arcs):
         made = None if arc.why else self._made(start, place, floor, around, arc)[0]
         return None if made is None else Found(made, arc, place)
 
-    def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, float | None]:
-        """The plan along an arc; None, why not, and how deep [m] something lay in it, if it touches something, where there is none."""
-        made, why = self._down(plan(self.physique, replace(start, haste=arc.how.haste), arc.path, place, floor), around)
+    def _made(self, start: Start, place: np.ndarray, floor: float, around: Sequence[Any], arc: Arc) -> tuple[Plan | None, str, Touch | None]:
+        """The plan along an arc; None, why not, and what it touches, if it does, where there is none."""
+        start = replace(start, haste=arc.how.haste)
+        draft = drafted(self.physique, start, arc.path, place, floor)
+        hit = surely(self.physique, start, draft.turning, around)
+        if hit is not None:
+            return None, hit.reason, hit
+        made, why = self._down(draft.plan(), around)
         why = why or wrong(self.physique, made)
         hit = None if why else touch(self.physique, made, around)
-        return (None, why, None) if why else (None, hit.reason, hit.deep) if hit is not None else (made, "", None)
+        return (None, why, None) if why else (None, hit.reason, hit) if hit is not None else (made, "", None)
 
     def _down(self, made: Plan, around: Sequence[Any]) -> tuple[Plan, str]:
         """A plan as it comes down: with a roll where that is so hard that people roll, if there is room; why it can't come down, if so."""
