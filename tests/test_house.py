@@ -22,6 +22,12 @@ def parsed(path):
     return ast.parse(path.read_text("utf-8"))
 
 
+@cache
+def nodes(path):
+    """The imports and the calls of a module, wherever they stand."""
+    return [node for node in ast.walk(parsed(path)) if isinstance(node, ast.Import | ast.ImportFrom | ast.Call)]
+
+
 def dotted(path):
     """The name that a module is imported by."""
     parts = path.relative_to(ROOT).with_suffix("").parts
@@ -60,7 +66,7 @@ def test_imports_run_one_way():
     """Game → controllers, never back; told from the sources, whatever is imported when."""
     for path in MODULES:
         if dotted(path).startswith("gambol.controllers"):
-            for node in ast.walk(parsed(path)):
+            for node in nodes(path):
                 names = [a.name for a in node.names] if isinstance(node, ast.Import) else \
                     [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
                 assert not any(n.split(".")[0] in ("game", "moderngl", "glfw") for n in names), path
@@ -74,7 +80,7 @@ def taken(path):
     """What of ours a module takes, whenever it does: the module that it names, and the name that it takes from there."""
     own, found = dotted(path), []
     room = own if path.name == "__init__.py" else own.rpartition(".")[0]
-    for node in ast.walk(parsed(path)):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             found += [(alias.name, "") for alias in node.names if alias.name in NAMES]
         elif isinstance(node, ast.ImportFrom):
@@ -230,7 +236,7 @@ def test_no_two_files_are_called_the_same_in_a_wing():
 
 def test_nobody_guesses_what_a_controller_has():
     """What the game asks of a controller is in the contract, with a null answer."""
-    guesses = [(path, node) for path in MODULES for node in ast.walk(parsed(path))
+    guesses = [(path, node) for path in MODULES for node in nodes(path)
                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("getattr", "hasattr")]
     assert not [f"{dotted(path)}: {ast.unparse(node)}" for path, node in guesses
                 if re.search(r"(controller|performer|someone|state\.memory)$", ast.unparse(node.args[0]))]

@@ -171,12 +171,12 @@ def _clip(path: Path, points: str, out: Path, method: str, file: Path | None, no
     from gambol.controllers.contract import Intent
     from gambol.controllers.reconstruction.live import Recorded
 
-    from ..world import performance
+    from ..world import SHIPPED, TURNING, performance
 
+    if turning and method not in (SHIPPED, TURNING):
+        raise Mistake(f"--turns goes with a method that hears them, --method trackers or turning; {method} has points alone")
     clip = performance(path, reading)
     controller = _controller(method, file, points)
-    if turning and not getattr(controller.method, "hears_turns", False):
-        raise Mistake(f"--turns goes with a method that hears them, --method trackers or turning; {method} has points alone")
     source = Recorded.of(clip, controller.controls, turning)
     if noise:
         source = source.noisy(noise, np.random.default_rng(seed))

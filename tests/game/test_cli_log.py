@@ -20,18 +20,26 @@ from stand_in import Glide
 from test_cli import Stage, gambol
 
 
-@pytest.fixture
-def log(tmp_path, monkeypatch):
-    """Two seconds of two who walk, from the second one on."""
-    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
-    monkeypatch.setattr(hosts, "Offscreen", Stage, raising=False)
-    path = tmp_path / "a.gambol"
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """What a log holds of two seconds of two who walk, from the second one on."""
+    path = tmp_path_factory.mktemp("log") / "a.gambol"
     played = Play(Glide(), 2, log=LogWriter(path, Glide(), 2))
     for frame in range(120):
         if frame == 60:
             played.handle(KeyEvent("W", True))
         played.tick(1 / 60)
     played.close()
+    return path.read_bytes()
+
+
+@pytest.fixture
+def log(written, tmp_path, monkeypatch):
+    """Such a log."""
+    monkeypatch.setattr("gambol.controllers.person.person", lambda *_: Glide())
+    monkeypatch.setattr(hosts, "Offscreen", Stage, raising=False)
+    path = tmp_path / "a.gambol"
+    path.write_bytes(written)
     return path
 
 

@@ -42,6 +42,20 @@ def motion(tmp_path_factory):
     return known.path, folder / "clip.bvh", clips[1]
 
 
+@pytest.fixture(scope="module")
+def misread(motion, tmp_path_factory):
+    """Files that are no performance: no motion, of somebody who lacks a leg, and too short."""
+    folder, (_, _, clip) = tmp_path_factory.mktemp("misread"), motion
+    offsets = clip.skeleton.offsets.copy()
+    offsets[clip.skeleton.index("LeftLeg")] = 0.0
+    files = {name: folder / f"{name}.bvh" for name in ("words", "legless", "instant")}
+    files["words"].write_text("HIERARCHY of words")
+    short = clip.slice(0, 60)
+    write_bvh(replace(short, skeleton=replace(clip.skeleton, offsets=offsets)), files["legless"])
+    write_bvh(replace(short, frame_time=1e-7), files["instant"])
+    return files
+
+
 @pytest.mark.parametrize("suffix", [".bvh", ".glb"])
 def test_a_clip_from_its_points(motion, tmp_path, suffix):
     database, file, clip = motion
@@ -109,16 +123,9 @@ def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
     (["--stream", "osc", "--map", "none.toml", "-o", "o.bvh"], "none.toml: can't be read"),
     (["--stream", "osc", "--map", "m.toml", "--points", "4", "-o", "o.bvh"], "give one of them"),
     (["--stream", "osc", "--points", "nose", "-o", "o.bvh"], "no control point 'nose'")])
-def test_mistakes_get_one_line(motion, tmp_path, monkeypatch, arguments, why):
+def test_mistakes_get_one_line(motion, misread, tmp_path, monkeypatch, arguments, why):
     monkeypatch.chdir(tmp_path)
-    words = tmp_path / "words.bvh"
-    words.write_text("HIERARCHY of words")
-    offsets = motion[2].skeleton.offsets.copy()
-    offsets[motion[2].skeleton.index("LeftLeg")] = 0.0
-    legless, instant = tmp_path / "legless.bvh", tmp_path / "instant.bvh"
-    write_bvh(replace(motion[2], skeleton=replace(motion[2].skeleton, offsets=offsets)), legless)
-    write_bvh(replace(motion[2].slice(0, 60), frame_time=1e-7), instant)
-    known = {"clip": motion[1], "database": motion[0], "words": words, "legless": legless, "instant": instant}
+    known = {"clip": motion[1], "database": motion[0], **misread}
     done = gambol("reconstruct", *(a.format(**known) for a in arguments))
     assert done.exit_code == 2
     assert why in done.output and len(done.output.strip().splitlines()) == 1
