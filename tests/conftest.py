@@ -25,8 +25,8 @@ from hypothesis import HealthCheck, is_hypothesis_test, settings  # noqa: E402
 
 from sampling import BATCHES, KINDS  # noqa: E402
 
-for name, same in (("gambol", True), ("seek", False)):  # a busy machine breaks no law, and fixtures here are values
-    settings.register_profile(name, derandomize=same, database=None, deadline=None, print_blob=True,
+for name, same, tries in (("gambol", True, 40), ("thorough", True, 100), ("seek", False, 100)):  # a busy machine breaks no law, and fixtures here are values
+    settings.register_profile(name, derandomize=same, max_examples=tries, database=None, deadline=None, print_blob=True,
                               suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 settings.load_profile("gambol")
 
@@ -56,10 +56,12 @@ def batch(request):
 
 def pytest_addoption(parser):
     parser.addoption("--times", type=int, default=1, help="try each law on so many times the examples")
-    parser.addoption("--thorough", action="store_true", help="try all cases of tests that are marked `few`, too, and films of many people to their ends")
+    parser.addoption("--thorough", action="store_true", help="try all cases of tests that are marked `few`, too, laws on more examples, and films of many people to their ends")
 
 
 def pytest_configure(config):
+    if config.option.thorough:
+        settings.load_profile("thorough")
     config.addinivalue_line("markers", "few(count): all cases tell of one thing and each takes seconds: so many of them, spread evenly, unless --thorough or a case is named")
 
 

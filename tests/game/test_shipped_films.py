@@ -20,8 +20,10 @@ from gambol.game.world import RATE, Watches
 from gambol.game.world.learnt_methods import methods
 from stand_in import same
 
-CROWD, BEGINNING = 8, 2.5
-"""More people than that cost as much as all other films together: of them the first seconds are enough, unless tests are to be thorough."""
+CROWD, BEGINNING, MOST = 8, 1.3, 20.0
+"""More people than that cost as much as all other films together: of them the first seconds are enough, and of who is alone these, unless tests are to be
+thorough; but all of those that have most in them."""
+WHOLE = {load(name).title for name in ("demo", "medley", "jump_course")}
 NOTHING = "nothing to step on"
 COMPARED = 15
 """Every so many steps two runs are held against each other."""
@@ -31,8 +33,8 @@ def compared(scenario):
     """For how long [s] a film is made again: a minute of the medley, and the beginnings of the others."""
     if any(actor.tracks is not None for actor in scenario.actors):
         return 0.75
-    few = 4.0 if len(scenario.actors) <= 4 else 1.5 if len(scenario.actors) <= 20 else 1.0
-    return scenario.duration if scenario.title == load("medley").title else 1.5 if scenario.followers else few
+    few = 2.5 if len(scenario.actors) <= 4 else 1.25 if len(scenario.actors) <= 20 else 1.0
+    return scenario.duration if scenario.title == load("medley").title else 1.0 if scenario.followers else few
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,8 @@ def made(request, walker):
     Who follows points walks after them: what makes a body of them plays no part, and costs a hundred times as much. Nor do overlays.
     """
     scenario, steps, moments = load(request.param).at_fps(4), [], []
-    long = scenario.duration if len(scenario.actors) <= CROWD or request.config.option.thorough else BEGINNING
+    alone = scenario.duration if len(scenario.actors) > 1 or scenario.title in WHOLE else min(scenario.duration, MOST)
+    long = scenario.duration if request.config.option.thorough else alone if len(scenario.actors) <= CROWD else BEGINNING
     run, few = film.acts, compared(scenario)
 
     def heard(*asked):
