@@ -13,7 +13,7 @@ from gambol.controllers.reconstruction.database import Database
 from gambol.controllers.reconstruction.database.database import Writer
 from gambol.controllers.reconstruction.ours import seen_from
 from gambol.controllers.reconstruction.pose_vector import REFERENCE, YAW_RATE, encode
-from gambol.controllers.reconstruction.trackers import FIRST, INPUTS, LAGS, LEGS, SLOTS, Learner, Moments, bodies, legs, moments_kernel, packed
+from gambol.controllers.reconstruction.trackers import FIRST, INPUTS, LAGS, LEGS, SLOTS, Learner, Moments, bodies, learning, legs, moments_kernel, packed
 from gambol.controllers.reconstruction.trackers.layers import shares
 from gambol.controllers.reconstruction.trackers.learning import loss
 from gambol.controllers.reconstruction.trackers.samples import Batch
@@ -72,8 +72,9 @@ def test_layers_that_add_have_the_slopes_they_say():
         value[at] += 1e-6
 
 
-def test_weights_learnt_elsewhere_are_taken(moments, tmp_path):
+def test_weights_learnt_elsewhere_are_taken(moments, tmp_path, monkeypatch):
     """And the network tells how far off they are; those of other widths are not taken."""
+    monkeypatch.setattr(learning, "_JUDGED", 512)
     learner, path = Learner(moments, 4, 0, (16, 16, 16)), tmp_path / "weights.npz"
     values = [np.random.default_rng(1).normal(0, 0.1, value.shape) for value in learner.values]
     np.savez(path, outs=learner.outs, learnt=2048, **{f"weights{i}": v for i, v in enumerate(values[:4])}, **{f"biases{i}": v for i, v in enumerate(values[4:])})
@@ -88,7 +89,7 @@ def test_pytorch_draws_and_judges_the_same(moments, monkeypatch):
     """The samples of given moments, bodies and trackers, and the loss with its slopes, are those that are drawn and judged here."""
     torch = pytest.importorskip("torch", reason="PyTorch learns the network on a graphics card; nothing else needs it")
     monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts" / "build")
-    theirs, learning = importlib.import_module("_torch_samples"), importlib.import_module("trackers_torch")
+    theirs, elsewhere = importlib.import_module("_torch_samples"), importlib.import_module("trackers_torch")
     pack, count = packed(moments), 64
     body = theirs.Body(pack, "cpu")
     motion, dice = theirs.Motion(pack, body), theirs.Dice(torch.Generator().manual_seed(0), "cpu")
@@ -113,7 +114,7 @@ def test_pytorch_draws_and_judges_the_same(moments, monkeypatch):
     np.testing.assert_allclose(found.truth, truth, atol=1e-3)
 
     poses = torch.tensor(truth + 0.2 * np.random.default_rng(1).normal(size=truth.shape), dtype=torch.float32, requires_grad=True)
-    total = learning.loss(body, poses, torch.zeros(count, 4), found)
+    total = elsewhere.loss(body, poses, torch.zeros(count, 4), found)
     total.backward()
     mine, slopes = loss(np.concatenate([poses.detach().numpy(), np.zeros((count, 4))], -1), Batch(inputs, found.truth.numpy().astype(float), moments.contacts[at], people))
     assert np.isclose(total.item(), mine, rtol=1e-4)

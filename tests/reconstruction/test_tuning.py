@@ -19,7 +19,7 @@ from gambol.game.world import SHIPPED, methods, usual
 sys.path.insert(0, str(Path(__file__).parent))
 from test_trackers import strides  # noqa: E402
 
-BATCHES = 12
+BATCHES, SIZE = 12, 128
 
 
 @lru_cache
@@ -42,15 +42,21 @@ def own(tmp_path_factory):
     return path, Moments.of(Database.open(path))
 
 
+@pytest.fixture(autouse=True)
+def few(monkeypatch):
+    """Samples by which a network is scaled and told its errors."""
+    monkeypatch.setattr(learning, "_JUDGED", 512)
+
+
 def taught(moments, share=1.0, batches=BATCHES):
-    tuner = Tuner(shipped(), moments, BATCHES, share=share)
+    tuner = Tuner(shipped(), moments, BATCHES, share=share, size=SIZE)
     for _ in range(batches):
         tuner.step()
     return tuner
 
 
 def test_it_errs_less_on_what_it_learns_from(own):
-    tuner = Tuner(shipped(), own[1], BATCHES)
+    tuner = Tuner(shipped(), own[1], BATCHES, size=SIZE)
     losses = [tuner.step() for _ in range(BATCHES)]
     assert np.mean(losses[-4:]) < 0.9 * np.mean(losses[:3])
 
@@ -69,21 +75,20 @@ def test_half_of_it_lies_halfway(own):
 def test_cut_off_it_goes_on_the_same(own, tmp_path):
     whole, part = taught(own[1], batches=4), taught(own[1], batches=2)
     part.save(tmp_path / "own-learning.npz")
-    again = Tuner(shipped(), own[1], BATCHES, share=1.0)
+    again = Tuner(shipped(), own[1], BATCHES, share=1.0, size=SIZE)
     again.resume(tmp_path / "own-learning.npz")
     for _ in range(2):
         again.step()
     assert all(np.array_equal(a, b) for a, b in zip(again.used(), whole.used(), strict=True))
     with pytest.raises(ArraysError, match="other motion"):
-        Tuner(shipped(), own[1], BATCHES + 1).resume(tmp_path / "own-learning.npz")
+        Tuner(shipped(), own[1], BATCHES + 1, size=SIZE).resume(tmp_path / "own-learning.npz")
     (tmp_path / "own-learning.npz").write_bytes(b"nothing")
     with pytest.raises(ArraysError, match="is no checkpoint"):
         again.resume(tmp_path / "own-learning.npz")
 
 
-def test_the_command_teaches_and_the_network_is_taken(own, tmp_path, monkeypatch):
+def test_the_command_teaches_and_the_network_is_taken(own, tmp_path):
     """It is no surer than of half of what it was, and bends no joint less."""
-    monkeypatch.setattr(learning, "_JUDGED", 512)
     out = tmp_path / "mine.npz"
     done = CliRunner().invoke(cli.app, ["database", "tune", str(own[0]), "-o", str(out), "--batches", "10", "--share", "0.01"])
     assert done.exit_code == 0, done.output

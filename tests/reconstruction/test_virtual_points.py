@@ -39,7 +39,7 @@ def method(database):
     points = virtual(CONTROLS)
     solver = Solver(points, DT)
     samples = Samples.of(database, solver)
-    networks = learn(samples, seeds=1, batches=1500, hidden=(128, 128))
+    networks = learn(samples, seeds=1, batches=600, hidden=(96, 96))
     near = Local(LocalRegression(LISTENED), Cells(Segments.of(database, 2, 2, points.joints, offsets=points.offsets)), 20)
     ours = Ours(Method(Fused((Expectation(networks, LostPoints.of(samples), DT), near)), solver))
     return Turning(ours, Starts.of(database, points), contacts(database))

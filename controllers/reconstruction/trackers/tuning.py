@@ -10,7 +10,7 @@ import hashlib
 
 import numpy as np
 
-from .learning import Learner
+from .learning import SIZE, Learner
 from .network import Network
 from .samples import Moments
 
@@ -27,12 +27,12 @@ SHARE = 0.5
 
 
 class Tuner(Learner):
-    """A network while it is learnt on. began: what it was. moments, batches, seed: as of a `Learner`. share: see `SHARE`."""
+    """A network while it is learnt on. began: what it was. moments, batches, seed, size: as of a `Learner`. share: see `SHARE`."""
 
     rate = RATE
 
-    def __init__(self, began: Network, moments: Moments, batches: int = BATCHES, seed: int = 0, share: float = SHARE):
-        super().__init__(moments, batches, seed, tuple(len(bias) for bias in began.biases[:-1]))
+    def __init__(self, began: Network, moments: Moments, batches: int = BATCHES, seed: int = 0, share: float = SHARE, size: int = SIZE):
+        super().__init__(moments, batches, seed, tuple(len(bias) for bias in began.biases[:-1]), size)
         self.began, self.taken, self.outs, self.added = began, share, began.outs, began.added
         self.anchors = [*began.weights, *began.biases]
         self.values, self.means = ([value.copy() for value in self.anchors] for _ in range(2))
