@@ -31,8 +31,8 @@ def walked(locomotion, seed, seconds=2.0, count=1):
 # a pure function of its state
 
 def test_the_same_twice_is_the_same_to_the_bit(library, locomotion, whimsical):
-    again = play(Locomotion(library), whimsical.wish)
-    assert all(bits(a) == bits(b) for a, b in zip(again.states, whimsical.states, strict=True))
+    again = play(Locomotion(library), whimsical.wish[:400])
+    assert all(bits(a) == bits(b) for a, b in zip(again.states, whimsical.states[:400], strict=True))
 
 
 def test_a_crowd_is_its_members_to_the_bit(locomotion, whimsical):
@@ -242,7 +242,7 @@ def test_motion_is_the_same_from_every_place_and_in_every_direction(library, see
 
 def test_the_size_of_the_step_does_not_matter(locomotion):
     """From display rate to a thousand a second: the same blend, the same phase, the same place."""
-    *ends, finest = [play(locomotion, hold(2.0, *WISHES).repeat(n, axis=0), dt=1 / (FPS * n)).states[-1].memory for n in (1, 4, 17)]
+    *ends, finest = [play(locomotion, hold(2.0, *WISHES[::2]).repeat(n, axis=0), dt=1 / (FPS * n)).states[-1].memory for n in (1, 4, 17)]
     for end in ends:
         assert np.abs(end["weights"] - finest["weights"]).max() < 0.08  # of who is still getting faster
         assert np.abs((end["phase"] - finest["phase"] + 0.5) % 1 - 0.5).max() < 0.05
