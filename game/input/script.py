@@ -82,7 +82,8 @@ class Script:
             elif thought and known.stops and move.jump.place is not None and math.dist(move.jump.place[::2], state.ground[:2]) > ANEW:
                 known = Known(WALKS[0])
             if known.thought is not None:
-                brakes = RunUp(0, before(controller, state, in_world(state.ground, intent.velocity), around))
+                x, z = in_world(state.ground, intent.velocity)
+                brakes = RunUp(0, before(controller, state, (float(x), float(z)), around))
                 known = known._replace(halts=brakes.halt is not None)
                 return replace(self, now=replace(self.now, aside=known)), brakes.heeded(state, waiting(state, intent))
             if known.waits:
