@@ -172,7 +172,7 @@ def learn(wanted: Sequence[tuple[str, str]], database: str | Path | None = None)
     say_forgets()
     with progress_bar() as bar:
         if not bar.console.is_terminal:
-            say("learning to make bodies of a few points, once: a minute, or some minutes of a large database for trackers that turn")
+            say("learning to make bodies of a few points: a minute, or some minutes of a large database for trackers that turn")
         tasks: dict[str, Any] = {}
 
         def progress(what: str, done: int, total: int) -> None:

@@ -15,6 +15,7 @@ from gambol.controllers.navigation import in_world, steer
 from gambol.controllers.supervisor import Asked
 
 from .pilot import STEERING
+from .straight_ahead import touches
 
 BESIDE = 0.1, 0.1
 """A place lies aside of his way who goes past it by more than these [rad, m]."""
@@ -58,6 +59,8 @@ HOPES = 1.1
 """Who has not yet played ahead until he is as near as this [m] lets a leap go by that is none in stride: one may come."""
 PAST = 0.6
 """Who has it nearer than this [m], and no longer before him, has gone past it."""
+SLOWED = 0.85
+"""Who has become slower than this share of his pace before what is ahead, as he thinks, goes on otherwise than he has thought."""
 READY = 1.0
 """What a jump bids that could go off at once."""
 
@@ -83,7 +86,7 @@ class Goes(Protocol):
 
 class Known(NamedTuple):
     """What is known of a leap to a place aside. pace: how fast he goes to it [m/s], 0 for as he does; steps: after how many steps it goes off; change: to which pace [m/s] he changes, and after how many steps.
-    stops: he comes to rest, as he can't leap as he goes. thought: what comes of thinking about it; thinks: for how many steps he has thought."""
+    stops: he comes to rest, as he can't leap as he goes. thought: what comes of thinking about it; thinks: for how many steps he has thought; halts: whether he is to come to rest before something meanwhile."""
 
     pace: float = 0.0
     steps: int = -LATE - 1
@@ -91,6 +94,7 @@ class Known(NamedTuple):
     stops: bool = False
     thought: Spread[Known] | None = None
     thinks: int = 0
+    halts: bool = False
 
     @property
     def lapsed(self) -> bool:
@@ -230,7 +234,7 @@ class Ahead(Generic[S]):
         best, refused = None, None
         self.number = yield 0
         while goes.leaps and state.active != "jump" and number * self.dt < (seconds if best is None else min(seconds, best.good)):
-            if until is not None and self.number >= until or self._past(state):
+            if until is not None and self.number >= until or self._past(state) or touches(state.ground[:2], float(state.floor), self.around):
                 break
             if best is not None and self.number + IN_TIME[1] >= best.number:
                 if best.strides or float(np.hypot(*(self.place - state.ground[:2]))) < HOPES:

@@ -12,13 +12,14 @@ import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, Strike, but
 from gambol.controllers.jump import Spread
-from gambol.controllers.navigation import STEP, follow
+from gambol.controllers.navigation import STEP, follow, in_world
 from gambol.controllers.supervisor import both
 
-from .aside import ANEW, EACH, WALKS, Ahead, Known, ahead, askew, paces, waiting
+from .aside import ANEW, EACH, SLOWED, STOPS, WALKS, Ahead, Known, ahead, askew, paces, waiting
 from .making import Making, pace_of, way_of
 from .moves import Move
-from .run_up import Asks
+from .run_up import Asks, RunUp
+from .straight_ahead import before
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +76,16 @@ class Script:
         if self.now.turns and not known.stops and known.lapsed:
             known = self._thinks(controller, state, intent, around, known.pace or pace_of(move), dt)
         if self.now.turns:
-            known, thought = known.after(), known.thought is not None
-            if thought and known.stops and move.jump.place is not None and math.dist(move.jump.place[::2], state.ground[:2]) > ANEW:
+            known, thought, halts = known.after(), known.thought is not None, known.halts
+            if thought and known.thought is None and halts and math.hypot(state.velocity[0], state.velocity[2]) < SLOWED * self.now.aside.pace:
+                known = STOPS  # what he has thought of is how he would have gone on
+            elif thought and known.stops and move.jump.place is not None and math.dist(move.jump.place[::2], state.ground[:2]) > ANEW:
                 known = Known(WALKS[0])
+            if known.thought is not None:
+                x, z = in_world(state.ground, intent.velocity)
+                brakes = RunUp(0, before(controller, state, (float(x), float(z)), around))
+                known = known._replace(halts=brakes.halt is not None)
+                return replace(self, now=replace(self.now, aside=known)), brakes.heeded(state, waiting(state, intent))
             if known.waits:
                 return replace(self, now=replace(self.now, aside=known)), waiting(state, intent)
         run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt, move.jump.place)

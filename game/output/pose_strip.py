@@ -30,7 +30,7 @@ def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size
     """`count` moments of an actor, or of each in its row, in equal steps from `start` to `end` [s].
 
     By default those of the first jump, from before the wind-up until the body stands or walks again, or all of the
-    scenario if there is none. size: of the whole picture in pixels. tell: hears of each
+    scenario if there is none. Each tells when in the scenario it is. size: of the whole picture in pixels. tell: hears of each
     jump that was not made and each place not reached. ScenarioError for an actor or a time that
     there is not.
     """
@@ -65,7 +65,7 @@ def strip(scenario: Scenario, controller: Any, count: int, shown: Overlays, size
             target[1] = 0.5 * (low + high)
             eye = target - far * beside + [0.0, 0.04 * far, 0.0]
             scenes.append(Scene(Camera(eye, target, fov=FOV), people[who:who + 1], frame.after.props, shown,
-                                (f"{frame.time - chosen[0].time:.2f} s",),
+                                (f"{frame.time:.2f} s",),
                                 part=(number / count, row / len(cast), 1.0 / count, 1.0 / len(cast))))
     return tuple(scenes)
 

@@ -90,6 +90,8 @@ def _paged(sheet: Sheet, size: tuple[int, int], letters: int) -> tuple[Sheet, ..
     made[-1] = noted if _share(noted, size, letters) <= 1.0 else made[-1]
     more = "   ↓ or wheel: more"
     more = more if width_of(spelled(f"{sheet.title} 9/9{more}"), font) <= room else ""
+    if len(made) == 1:
+        return tuple(made)
     return tuple(replace(page, title=f"{sheet.title} {number}/{len(made)}{more}") for number, page in enumerate(made, 1))
 
 

@@ -197,6 +197,11 @@ def test_a_strip_shows_the_first_jump_from_its_side_until_the_body_stands(same_r
         assert abs(sight[2]) < 0.01 * abs(sight[0]) and np.linalg.norm(sight) > 3
 
 
+def test_poses_of_a_strip_tell_when_in_the_scenario_they_are(same_run, somebody):
+    scenes = strip(same_run, somebody, 3, Overlays(), (1200, 400), 1.0, 2.0, actor="A")
+    assert [scene.text for scene in scenes] == [("1.00 s",), ("1.50 s",), ("2.00 s",)]
+
+
 def test_every_actor_of_a_strip_has_a_row(same_run, somebody):
     scenes = strip(same_run, somebody, 4, Overlays(), (1200, 900))
     assert [scene.part for scene in scenes] == [pytest.approx((n / 4, row / 3, 1 / 4, 1 / 3)) for row in range(3) for n in range(4)]

@@ -5,14 +5,16 @@ import math
 import numpy as np
 import pytest
 
+from gambol.controllers.contract import but
 from gambol.controllers.jump import Jumping
 from gambol.controllers.jump.reach import arcs, reach
 from gambol.controllers.jump.body import soles
 from gambol.controllers.locomotion import Locomotion, Settings
-from gambol.controllers.navigation import in_world
+from gambol.controllers.navigation import in_world, room
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, Script, Wish
 from gambol.game.input.aside import EACH, beside, lands
+from gambol.game.scene.scene import Box
 from gambol.game.session import Timeline, begin, refused
 from gambol.game.world import DT, RATE, Character, World
 
@@ -98,7 +100,7 @@ def tapped(someone, aside, back=None, speed=1.3):
     """The plan of somebody who goes straight on and taps the leap as the stick is thrown so far to the left [°], and let go after so long [s]; and which way he flies [rad], and when he begins [s]."""
     line = Timeline(begin(World((Character("A", someone, someone.start()),)), 1))
     pressed, throw, run = round(3.1 * RATE), min(speed / 1.3, 1.0), max((speed - 1.3) / 1.7, 0.0)
-    for step in range(pressed + round(2.0 * RATE)):
+    for step in range(pressed + round(1.5 * RATE)):
         yaw, since, before = line.now.players[0].camera.yaw, (step - pressed) / RATE, line.now
         there, on = math.radians(aside) * (since >= 0.0), throw * (back is None or since < back)
         line.advance((Wish(move=(-on * math.sin(there - yaw), on * math.cos(there - yaw)), run=run, jump=0.0 <= since < HELD).rounded(),))
@@ -173,3 +175,25 @@ def test_who_is_told_of_a_place_that_he_runs_past_or_that_lies_behind_turns_back
     assert made is not None, script.refused
     feet = made.feet if made.path.lands is None else made.feet[made.path.lands:made.path.lands + 1]
     assert np.linalg.norm(soles(feet, someone.parts["jump"].physique.tables)[:, [0, 2]].mean(0) - place) < 0.05
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("aside", [25.0, -25.0])
+def test_who_thinks_of_a_leap_aside_onto_a_box_does_not_walk_into_it_meanwhile(someone, under_way, aside):
+    """He thought for a second, walked into it at 1.3 m/s, and was lifted up onto it without a leap."""
+    state = under_way[0]
+    course = math.atan2(*in_world(state.ground, state.velocity)) + math.radians(aside)
+    x, z = state.ground[:2] + 2.3 * np.array([math.sin(course), math.cos(course)])
+    things = (Box((float(x), 0.3, float(z)), (1.5, 0.6, 1.5), course),)
+    script = Script((Move(5.0, (1.3, 0.0, 0.0), jump=Jump((float(x), 0.6, float(z)))),))
+    for _ in range(round(1.5 * RATE)):
+        script, intent = script.step(state, DT)
+        script, intent = script.held(someone, state, but(intent, around=things), things, DT)
+        after, _ = someone.step(state, but(intent, around=things), DT)
+        if after.active == "jump":
+            break
+        lost = np.hypot(*state.velocity[::2]) - np.hypot(*after.velocity[::2])
+        assert lost < 0.3, f"he lost {lost:.2f} m/s in a step"
+        assert float(after.floor) < 0.05
+        state = after
+    assert room(state.ground[:2], 0.0, things) > 0.0

@@ -55,6 +55,13 @@ def test_pages_leave_out_no_key_and_no_button_of_a_pad_that_is_there(size):
     assert " ".join(row.cells[0] for page in arranged(held, size)[1] for table in page.tables for row in table if row.lit).strip() == want
 
 
+def test_only_a_sheet_of_several_pages_tells_of_more():
+    title = SHEETS["no pad"].title
+    for size in ((1280, 720), (800, 500), (640, 360), (320, 240)):
+        _, pages = arranged(SHEETS["no pad"], size)
+        assert all(page.title.startswith(f"{title} {number}/{len(pages)}") for number, page in enumerate(pages, 1)) if len(pages) > 1 else pages[0].title == title
+
+
 def test_it_is_drawn_over_the_whole_picture_once(draw):
     scene = Scene(camera())
     left, right = replace(scene, part=(0.0, 0.0, 0.5, 1.0)), replace(scene, part=(0.5, 0.0, 0.5, 1.0))
