@@ -24,7 +24,7 @@ from .held_up import held_up, led_out
 from .idle import ENDS
 from .kernel import DURATION_AT
 from .library import Library
-from .memory import Settings, memory_dtype, plain, put
+from .memory import ABOUT, ASKS, Settings, memory_dtype, plain, put
 from .pushed import pushed
 from .step import step_kernel
 from .tables import Tables, tables_of
@@ -142,7 +142,8 @@ class Locomotion(Controller):
         if not np.isfinite(wish).all():
             wish[~np.isfinite(wish).all(-1)] = 0.0
         np.minimum(np.maximum(wish, -20.0, out=wish), 20.0, out=wish)
-        memory["alert"] = (intent.leap is not None or intent.aim is not None) and intent.halt is None  # who is to halt before it leaps onto nothing
+        leaps = 0 if intent.halt is not None else ASKS if intent.leap is not None else ABOUT if intent.aim is not None else 0  # who is to halt before it leaps onto nothing
+        memory["alert"] = leaps
         memory["looks"] = 0
         _towards(memory, intent.towards, shape)
         if intent.look is not None:

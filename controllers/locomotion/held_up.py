@@ -13,7 +13,7 @@ import numpy as np
 from ..compiled import kernel
 from ..navigation.passing import HEAD, NEAR, STEP, out_kernel, rise_kernel, slow_kernel
 from ..navigation.routes import distance
-from .memory import put
+from .memory import ABOUT, ASKS, put
 
 LAG, BRAKE = 0.1, 6.0
 """Nobody goes faster towards a wall than he could stop who begins to so much later [s], braking so hard [m/s²], half as hard again as legs push."""
@@ -27,14 +27,17 @@ RESTS, CLOSE = 0.15, 0.1
 """Who would get on more slowly than the first where he wishes to [m/s] stands still in place of treading on the spot; he sets off again only where he could if walls were nearer
 by the second [m]."""
 LEAPT = 1.3
-"""What is no higher over the floor than this [m] may be leapt onto: it does not hold up who wants to leap."""
+"""What is no higher over the floor than this [m] may be leapt onto: it does not hold up who is about to leap."""
+LATE, HARD = 0.05, 12.0
+"""And it holds up who asks for a leap and has not leapt by the last moment: the same of him as LAG and BRAKE."""
 
 ARMS, HANDS = 0.6, 0.5
 """Who stands has no room for his arms where something is so near to his middle [m] that is higher over the floor than the second [m]."""
 
 
 def held_up(memory: np.ndarray, wish: np.ndarray, floors: np.ndarray, walls: np.ndarray, dt: float) -> None:
-    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who wants to leap only towards those that nobody leaps onto.
+    """Slow down, in place, the commands of characters (N,) towards walls (K, 9) as of `walls_of`; of who is about to leap only towards those that nobody leaps onto, and of who
+    asks for a leap at the last moment.
     Take away the wishes (N, 3) that lead nowhere. Note whose feet, and of those who stand whose arms, have no room. floors: (N,) [m]."""
     memory["cramped"] = memory["walled"] = 0
     if len(walls):
@@ -72,7 +75,7 @@ def hold_kernel(memory, wish, floors, walls, dt):
         c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
         velocity[0], velocity[1] = c * m.command[2] + s * m.command[0], c * m.command[0] - s * m.command[2]
         rate[0], rate[1] = velocity[0], velocity[1]
-        if slow_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], velocity, NEAR, LAG, BRAKE, BACK, LEAPT if m.alert else STEP):
+        if _slowed(m, floors[n], walls, velocity, NEAR):
             _evenly(rate, velocity, dt)
             m.walled = 1
             m.command[0], m.command[2] = s * velocity[0] + c * velocity[1], c * velocity[0] - s * velocity[1]
@@ -84,6 +87,14 @@ def hold_kernel(memory, wish, floors, walls, dt):
             into = min(rate[0] * x + rate[1] * z, 0.0)
             m.rate[0] -= into * (s * x + c * z)
             m.rate[2] -= into * (c * x - s * z)
+
+
+@kernel
+def _slowed(m, floor, walls, velocity, near):
+    """Take from a velocity (2,), in place, what goes too fast towards walls, to whose middle none comes nearer than `near` [m]; whether anything was."""
+    late = m.alert == ASKS
+    return slow_kernel(walls, m.ground[0], m.ground[1], floor, m.ground[2], velocity, near, LATE if late else LAG, HARD if late else BRAKE, BACK,
+                       LEAPT if m.alert == ABOUT else STEP)
 
 
 @kernel
@@ -110,8 +121,7 @@ def _nowhere(m, wish, floor, walls, velocity):
     x, z = c * wish[2] + s * wish[0], c * wish[0] - s * wish[2]
     velocity[0], velocity[1] = x, z
     near = NEAR + CLOSE if m.settled else NEAR
-    slowed = slow_kernel(walls, m.ground[0], m.ground[1], floor, m.ground[2], velocity, near, LAG, BRAKE, BACK, LEAPT if m.alert else STEP)
-    return slowed and velocity[0] * x + velocity[1] * z < RESTS * speed
+    return _slowed(m, floor, walls, velocity, near) and velocity[0] * x + velocity[1] * z < RESTS * speed
 
 
 @kernel
@@ -120,6 +130,6 @@ def beyond_kernel(memory, before, floors, walls, shifts):
     found = False
     for n in range(memory.shape[0]):
         m = memory[n]
-        if out_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], before[n], NEAR - GIVES, shifts[n], LEAPT if m.alert else STEP):
+        if out_kernel(walls, m.ground[0], m.ground[1], floors[n], m.ground[2], before[n], NEAR - GIVES, shifts[n], LEAPT if m.alert == ABOUT else STEP):
             found = True
     return found

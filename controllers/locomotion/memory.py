@@ -17,6 +17,8 @@ from .library import HIPS, Library
 
 WALK, RUN = 0, 1
 """Gait families, as memory and kernels number them."""
+ABOUT, ASKS = 1, 2
+"""Somebody is alert who is about to leap, or who asks for a leap."""
 PATH = 48
 """Phases of a cycle at which the feet of primitives are looked up."""
 

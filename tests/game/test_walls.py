@@ -109,3 +109,16 @@ def test_who_is_about_to_leap_is_held_up_by_what_nobody_leaps_onto(speed):
         state, _ = who.parts["locomotion"].step(state, Intent(np.array([speed, 0.0, 0.0]), around=things, aim=Leap(None, 0.4)), 1 / 60)
         frames.append(state.ground)
     assert least(np.array(frames), things) > NEAR - SLACK
+
+
+@pytest.mark.parametrize("speed, high", [(1.4, 0.6), (3.0, 1.0)])
+def test_who_asks_for_a_leap_onto_a_box_and_can_not_stops_before_it(speed, high):
+    """He walked into it, and was lifted onto it or went through it."""
+    things = (Box((0.05, 0.5 * high, 2.0), (3.0, high, 1.0)),)
+    who = somebody()
+    state, frames = who.parts["locomotion"].start(), []
+    for _ in range(240):
+        state, _ = who.parts["locomotion"].step(state, Intent(np.array([speed, 0.0, 0.0]), around=things, leap=Leap(np.array([0.0, high, 2.0]))), 1 / 60)
+        frames.append(state.ground)
+    assert 1.5 - NEAR - 0.3 < frames[-1][1] < 1.5 - NEAR + SLACK and float(state.floor) == 0.0
+    assert np.diff(np.gradient(np.array(frames)[:, 1]) * 60).min() * 60 > -13.0
