@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from gambol.controllers.body import contact_points, forward_kinematics
 from gambol.controllers.contract import Intent, Leap
+from gambol.controllers.locomotion.memory import ABOUT, ASKS
 from gambol.controllers.locomotion.tops import SAME, SEEN, ground_kernel, tops
 from gambol.controllers.locomotion.treads import FOOT, NONE, SOLE, TIP, under_kernel
 from gambol.controllers.navigation import floor_at, gap
@@ -161,8 +162,9 @@ def test_a_child_climbs_in_its_own_size(locomotion):
 def test_a_child_that_aims_stops_idling(locomotion):
     """What another controller is wanted for is known to a walker in another size, too."""
     child = Scaled(locomotion, 0.7)
-    state, _ = child.step(child.start(), Intent(leap=Leap(np.zeros(3))), 1 / FPS)
-    assert state.memory.memory["alert"] == 1
+    for intent, alert in ((Intent(aim=Leap(np.zeros(3))), ABOUT), (Intent(leap=Leap(np.zeros(3))), ASKS)):
+        state, _ = child.step(child.start(), intent, 1 / FPS)
+        assert state.memory.memory["alert"] == alert
     assert child.step(state, Intent(), 1 / FPS)[0].memory.memory["alert"] == 0
 
 
