@@ -10,7 +10,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from gambol.controllers.contract import CharacterState, Intent, but
-from gambol.controllers.jump import RUNNING, Pieces, Spread
+from gambol.controllers.jump import RUNNING, Pieces, Spread, priced
 from gambol.controllers.navigation import in_world, steer
 from gambol.controllers.supervisor import Asked
 
@@ -274,14 +274,7 @@ class Ahead(Generic[S]):
 
     def _asked(self, state: CharacterState, intent: Intent) -> Pieces[Any]:
         """The plan of a leap that is asked, or why there is none."""
-        looks = self.controller.looks(state, intent)
-        while True:
-            try:
-                cost = next(looks)
-            except StopIteration as end:
-                made = end.value
-                break
-            self.number = yield COSTS * cost
+        made = yield from priced(self.controller.looks(state, intent), COSTS)
         self.number = yield 0 if isinstance(made, str) else PLANS
         self.number = yield 0  # that is paid off
         return made

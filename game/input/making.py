@@ -16,6 +16,7 @@ from .aside import ANEW, FAST, NEAREST, STOPS, UNDER_WAY, Known, bent, beside, l
 from .moves import Jump, Move
 from .pilot import STEERING
 from .run_up import RunUp
+from .stances import Stand
 
 ARRIVED = 0.12
 """A path is walked when no more than this is left of it [m]."""
@@ -62,7 +63,7 @@ class Making:
     for how many it was aimed at; jumped: whether it began. passed: whether what its run-up leads to lies behind for good. hops: x, z [m] where its hop
     lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none. run_up: what it knows of its run-up. stood: for how
     many steps somebody has stood on his way. why: what last kept him from leaping off a foot that was under him. aside: what is known of a leap to a place beside his way;
-    turns: whether he turns to one.
+    turns: whether he turns to one. stand: from where he leaps once he comes to rest; None before.
     """
 
     steps: int = 0
@@ -79,6 +80,7 @@ class Making:
     why: str = ""
     aside: Known = Known()
     turns: bool = False
+    stand: Stand | None = None
 
     def step(self, move: Move, state: CharacterState, dt: float) -> tuple[Making, Intent]:
         """The same `dt` seconds later, and what is asked of a character in `state` meanwhile."""
@@ -91,6 +93,15 @@ class Making:
         stands = now.path is not None and not now.jumped and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
         return replace(now, steps=now.steps + 1, stood=now.stood + 1 if stands else 0), intent
 
+    @property
+    def rests(self) -> bool:
+        """Whether somebody comes to rest on his run-up, to leap from there."""
+        return self.aside.stops or self.run_up.halt is not None
+
+    def fails(self, state: CharacterState, dt: float) -> bool:
+        """Whether somebody who has come to rest can't leap from there."""
+        return self.asked * dt > PATIENCE and jumping(state) is None and bool(state.refused) and state.refused not in MOMENTARY
+
     def stuck(self, dt: float) -> bool:
         """Whether that is to be told now: once, of every stand."""
         return self.stood == math.ceil(STANDS / dt)
@@ -100,6 +111,8 @@ class Making:
         now = jumping(state)
         if move.jump is not None and self.jumped:
             return now is None or now.landed
+        if self.stand is not None and self.stand.goes:
+            return False
         if self.passed or not self.aside.stops and self.steps * dt >= move.seconds - 0.5 * dt:
             return True
         if move.jump is not None and (self.aside.stops or not move.runs):
@@ -151,6 +164,10 @@ class Making:
         way = place[[0, 2]] - state.ground[:2]
         far = float(np.hypot(*way))
         leap = Leap(None if onward is None else place, jump.airtime, heading=jump.heading, on=jump.on)
+        led, waits = (None, False) if self.stand is None else (self.stand.leads(state), self.stand.holds(state))
+        if led is not None and waits:
+            return self, led
+        intent = intent if led is None else led
         runs = move.runs and not self.aside.stops
         if runs:
             speed, behind = float(np.hypot(state.velocity[0], state.velocity[2])), bool(way @ np.array(in_world(state.ground, intent.velocity)) < -PASSED * _pace(intent))
@@ -175,7 +192,7 @@ class Making:
             ready = abs(math.remainder(heading - float(state.ground[2]), math.tau)) < ASKEW
         else:
             ready = True
-        if not ready:
+        if waits or not ready:
             aims = runs and state.active == "locomotion" and np.hypot(state.velocity[0], state.velocity[2]) > UNDER_WAY
             return self, replace(intent, aim=leap) if aims else intent
         if not runs and self.aimed * dt < jump.aims - 0.5 * dt:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Intent, Strike, but
+from gambol.controllers.contract import CharacterState, Intent, Leap, Strike, but
 from gambol.controllers.jump import Spread
 from gambol.controllers.navigation import STEP, follow, in_world
 from gambol.controllers.supervisor import both
@@ -19,6 +19,7 @@ from .aside import ANEW, EACH, SLOWED, STOPS, WALKS, Ahead, Known, ahead, askew,
 from .making import Making, pace_of, way_of
 from .moves import Move
 from .run_up import Asks, RunUp
+from .stances import Place, stand_for
 from .straight_ahead import before
 
 
@@ -44,8 +45,8 @@ class Script:
 
     @property
     def leaps(self) -> bool:
-        """Whether its move ends with a jump: its run-up may go at what it leaps onto."""
-        return not self.done and self.moves[self.index].jump is not None
+        """Whether its move ends with a jump: its run-up may go at what it leaps onto, but not who comes to rest before it."""
+        return not self.done and self.moves[self.index].jump is not None and not (self.now.stand is not None and self.now.stand.goes)
 
     def step(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         """The script `dt` seconds later, what it asks of a character in `state` meanwhile, and what strikes him."""
@@ -57,7 +58,7 @@ class Script:
             now, intent = script.now.step(script.moves[script.index], state, dt)
             if intent.leap is not None and not _goes_on(script.moves[script.index + 1:]):
                 intent = but(intent, leap=replace(intent.leap, stays=True))
-            told = now.stuck(dt) and not script.leaps  # else it is told as the jump is given up
+            told = now.stuck(dt) and script.moves[script.index].jump is None  # else it is told as the jump is given up
             script = replace(script, now=now, refused=(*script.refused, script.stands) if told else script.refused)
         return script, but(intent, strike=reduce(both, hits)) if hits else intent
 
@@ -70,7 +71,19 @@ class Script:
     def held(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
         """The same script, and what it asks of a character in `state` in this step, who on a run-up comes to rest before what he can't leap."""
         move = None if self.done else self.moves[self.index]
-        if move is None or move.jump is None or self.now.jumped or state.active == "jump" or not move.runs:
+        if move is None or move.jump is None or self.now.jumped or not move.runs:
+            return self, intent
+        if self.now.stand is None and self.now.rests and state.active != "jump" and move.jump.place is not None and _before(state, move.jump.place):
+            return self._rests(controller, state, around, self.now.run_up.halt, ()).held(controller, state, intent, around, dt)
+        script = self if self.now.stand is None else self._rested(controller, state, around, dt)
+        if script.now.stand is not None and script.now.stand.holds(state):
+            return script, but(intent, leap=None, aim=None)
+        return script._goes_at_it(move, controller, state, intent, around, dt)
+
+    def _goes_at_it(self, move: Move, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], dt: float) -> tuple[Script, Intent]:
+        """The same of who is on his run-up, or asks for his leap from where he stands."""
+        assert move.jump is not None
+        if state.active == "jump":
             return self, intent
         known = self.now.aside
         if self.now.turns and not known.stops and known.lapsed:
@@ -90,6 +103,25 @@ class Script:
                 return replace(self, now=replace(self.now, aside=known)), waiting(state, intent)
         run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt, move.jump.place)
         return replace(self, now=replace(self.now, run_up=run_up, aside=known)), run_up.heeded(state, intent)
+
+    def _rests(self, controller: Any, state: CharacterState, around: Sequence[Any], halt: Sequence[float] | None, tried: tuple[Place, ...]) -> Script:
+        """The same of who begins to think of where he can leap from, as he comes to rest. halt: x, z [m] there; None: as soon as he can. tried: where he could not."""
+        jump = self.moves[self.index].jump
+        assert jump is not None and jump.place is not None  # or he would not come to rest for it
+        leap = Leap(np.asarray(jump.place, float), jump.airtime, heading=jump.heading, on=jump.on)
+        return replace(self, now=replace(self.now, stand=stand_for(controller, state, leap, around, halt, tried)))
+
+    def _rested(self, controller: Any, state: CharacterState, around: Sequence[Any], dt: float) -> Script:
+        """The same of who goes to where he can leap from, as soon as he knows and is slow enough, and leaps from there as who turns to a place aside does."""
+        stand, now = self.now.stand, self.now
+        assert stand is not None
+        if stand.again and now.fails(state, dt):
+            x, z, heading = map(float, state.ground)
+            return self._rests(controller, state, around, (x, z), (*stand.tried, (x, z, heading)))._rested(controller, state, around, dt)
+        after = stand.after(state, dt)
+        if after.goes and not stand.goes:
+            now = replace(now, asked=0, aside=STOPS, turns=True, run_up=RunUp())
+        return replace(self, now=replace(now, stand=after))
 
     def _thinks(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], pace: float, dt: float) -> Known:
         """What is known of who begins to turn to a place aside, and to think of how to leap to it, and goes so fast [m/s]."""
@@ -143,6 +175,11 @@ class Script:
             while index < len(self.moves) and _hops(self.moves[index]):
                 index += 1
         return replace(self, index=index, refused=refused, now=Making(hopped=self.now.hops if self.now.jumped else None))
+
+
+def _before(state: CharacterState, place: Sequence[float]) -> bool:
+    """Whether a place (3,) lies before somebody, and not behind."""
+    return abs(askew(state, np.asarray(place, float)[[0, 2]] - np.asarray(state.ground[:2], float))) < 0.5 * math.pi
 
 
 def _goes_on(moves: Sequence[Move]) -> bool:

@@ -3,9 +3,9 @@
 from .arcs import How
 from .feasibility import BESIDE, HARD, MOMENTARY, PACE, SETS_FEET, TOO_NEAR, Refused, meant, too_weak
 from .reach import Found, Reach
-from .seeking import SHARE, Onward, Pieces, Seeking, Spread, whole
+from .seeking import SHARE, Onward, Pieces, Seeking, Spread, priced, whole
 from .sweep import Touch, touch
 
 __all__ = [
-    "BESIDE", "Found", "HARD", "How", "MOMENTARY", "Onward", "PACE", "Pieces", "Reach", "Refused", "SETS_FEET", "SHARE", "Seeking", "Spread", "TOO_NEAR", "Touch", "meant", "too_weak", "touch", "whole",
+    "BESIDE", "Found", "HARD", "How", "MOMENTARY", "Onward", "PACE", "Pieces", "Reach", "Refused", "SETS_FEET", "SHARE", "Seeking", "Spread", "TOO_NEAR", "Touch", "meant", "priced", "too_weak", "touch", "whole",
 ]

@@ -14,7 +14,7 @@ from ...navigation import clearance, floor_at, slope_at
 from ..body import FLAT, LEVEL, Physique, Start, landing_feet, soles
 from ..motion import Path, grounded, over_ledge, path
 from ..prior import Prior
-from .feasibility import HARD, PACE, begins, fault, hopeless, meant
+from .feasibility import HARD, PACE, RUNS_ON, begins, fault, hopeless, meant
 from .seeking import PATH, Pieces, whole
 
 HEIGHTS = 1.0, 1.12, 1.26, 1.42, 1.6
@@ -164,7 +164,7 @@ class Arcs:
         way = self.path(start, place, floor, how.airtime, how.low_arms, how.tucked)
         if not hopeless(self.physique, way):
             way = grounded(self.physique, start, way, floor)
-        return Arc(way, fault(self.physique, way, around, floor), how)
+        return Arc(way, RUNS_ON if start.stays and start.cramped and way.lands is not None else fault(self.physique, way, around, floor), how)
 
     def survey(self, start: Start, place: np.ndarray, floor: float, airtime: float | None = None,
                around: Sequence[Any] = (), heights: Sequence[float] = HEIGHTS) -> tuple[Path, str]:

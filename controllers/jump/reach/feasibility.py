@@ -47,6 +47,8 @@ HOPELESS = 1.5
 """Nobody leaps along a path that is estimated to ask legs for so many times what they give: of 985 that could be leapt none was estimated to ask for all of it."""
 PACE = "too far for this ", TOO_NEAR
 """And one for which the foot that pushes would have to speed up or brake too much."""
+RUNS_ON = "too fast for this place: who lands on one foot from this run comes to rest beyond it"
+"""Why nobody leaps who wants to stay where there is no room to come to rest."""
 BESIDE_IT = 0.05
 """What is nearer than this [m] is no way ahead."""
 GRAZE = 0.05

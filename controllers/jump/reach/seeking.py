@@ -37,6 +37,16 @@ def weighed(pieces: Pieces[T]) -> Pieces[tuple[T, int]]:
         yield piece
 
 
+def priced(pieces: Pieces[T], dear: int) -> Pieces[T]:
+    """The same pieces, each so many times as dear."""
+    while True:
+        try:
+            piece = next(pieces)
+        except StopIteration as end:
+            return end.value
+        yield dear * piece if isinstance(piece, int) else piece
+
+
 def counted(pieces: Pieces[T], dear: int, ask: Callable[[], None]) -> T:
     """What comes of all pieces at once. ask: is called whenever they have cost so much more."""
     spent = 0

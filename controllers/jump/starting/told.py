@@ -18,8 +18,8 @@ HALF_TURN = 1e-3
 """So little short of half a turn [rad] is one."""
 FEET = "left", "right", "both"
 """On which feet one may land to hop on."""
-BEYOND = 0.2, 0.4, 0.6, 0.8, 1.0
-"""Who runs on from where he lands needs floor and room so far beyond [m]."""
+BEYOND, EACH, BRAKES = 1.0, 0.2, 2.8
+"""Who runs on from where he lands needs floor and room so far beyond [m], looked at so often [m]; and who wants to stay there as far as he goes braking so hard [m/s²]."""
 
 
 def turning(start: Start, leap: Leap | None) -> Start:
@@ -44,7 +44,8 @@ def cramped(start: Start, leap: Leap | None, ground: np.ndarray, around: Sequenc
         return start
     there, high = place[[0, 2]], float(place[1])
     ahead = (there - ground[:2]) / max(float(np.hypot(*(there - ground[:2]))), 1e-9)
-    for far in BEYOND:
+    stops = float(start.velocity[[0, 2]] @ start.velocity[[0, 2]]) / (2.0 * BRAKES) if leap.stays else 0.0
+    for far in np.arange(EACH, max(BEYOND, stops) + 0.5 * EACH, EACH):
         x, z = there + far * ahead
         if room(np.array([x, z]), high, around) > 0.0:
             high = floor_at(x, z, around, high + UP)  # as slopes and treads go on
