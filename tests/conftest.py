@@ -5,6 +5,7 @@ The examples are the same in every run; `scripts/seek.py` seeks new ones.
 The recorded motion is no part of the project.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -56,24 +57,30 @@ def batch(request):
 
 def pytest_addoption(parser):
     parser.addoption("--times", type=int, default=1, help="try each law on so many times the examples")
-    parser.addoption("--thorough", action="store_true", help="try all cases of tests that are marked `few`, too, laws on more examples, and films of many people to their ends")
+    parser.addoption("--thorough", action="store_true", help="try what is marked `thorough` and all cases of what is marked `few`, too, laws on more examples, and films of many people to their ends")
 
 
 def pytest_configure(config):
     if config.option.thorough:
         settings.load_profile("thorough")
-    config.addinivalue_line("markers", "few(count): all cases tell of one thing and each takes seconds: so many of them, spread evenly, unless --thorough or a case is named")
+    for mark in ("few(count): all cases tell of one thing and each takes long: so many of them, spread evenly, unless --thorough or its file is named",
+                 "thorough: tells more widely of what a quicker test fails for, too, if it breaks: only with --thorough or where its file is named"):
+        config.addinivalue_line("markers", mark)
 
 
 def pytest_collection_modifyitems(config, items):
-    if not config.option.thorough and not any("[" in arg for arg in config.args):
-        left_out = {item for cases in _families(items) for item in cases if item not in _spread(cases)}
-        config.hook.pytest_deselected(items=list(left_out))
-        items[:] = [item for item in items if item not in left_out]
-    laws = {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}
-    for law in laws if config.option.times > 1 else ():
+    if not config.option.thorough:
+        named = {Path(arg.split("::")[0]).resolve() for arg in config.args}
+        kept = {item for cases in _families(items) for item in _spread(cases)}
+        left_out = [item for item in items if item.path not in named and (item.get_closest_marker("thorough") or item.get_closest_marker("few") and item not in kept)]
+        config.hook.pytest_deselected(items=left_out)
+        gone = set(left_out)
+        items[:] = [item for item in items if item not in gone]
+    usual, share = settings().max_examples, 1.0 if config.option.thorough else 0.5
+    for law in {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}:
         own = law._hypothesis_internal_use_settings
-        law._hypothesis_internal_use_settings = settings(own, max_examples=own.max_examples * config.option.times)
+        tries = own.max_examples if own.max_examples == usual else math.ceil(share * own.max_examples)
+        law._hypothesis_internal_use_settings = settings(own, max_examples=tries * config.option.times)
 
 
 def _families(items):

@@ -124,6 +124,7 @@ def test_motion(short, tmp_path):
     assert (tmp_path / "b-A.bvh").exists() and (tmp_path / "b-B.bvh").exists()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("command", [("render", "a.mp4"), ("render", "a.bvh"), ("export", "a.glb"), ("strip", "a.png"), ("film", "footage"),
                                      ("gallery", "page")])
 def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, command, monkeypatch):

@@ -1,6 +1,7 @@
 """Actors who are told where to be and avoid each other: nobody touches anybody, all arrive."""
 
 import numpy as np
+import pytest
 
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.person import person
@@ -59,6 +60,7 @@ def test_alone_a_goal_is_walked_to_as_without_others(tmp_path):
     assert np.array_equal(with_manners, without)
 
 
+@pytest.mark.thorough
 def test_the_two_at_the_corner_would_meet_and_pass_without_a_script():
     def met(avoid, until):
         nearest = np.inf

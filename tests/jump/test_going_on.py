@@ -68,6 +68,7 @@ def test_feet_stand_still_and_clear_the_floor_and_each_other(leapt, person):
         assert not len(stood) or np.ptp(stood, axis=0)[[0, 2]].max() < 0.02
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("way", "most"), [((-0.4, 0.4), 0.45), ((-0.4, -0.4), 0.45), ((-0.8, 0.0), 0.45), ((0.55, 0.55), 0.5), ((0.8, 0.0), 0.5)])
 def test_nobody_waits_long_for_a_foot_that_carries_him_on(person, way, most):
     wish, state = np.array([way[0], 0.0, way[1]]), person.start()
@@ -99,6 +100,7 @@ def test_who_skips_ahead_swings_his_arms_by_turns_and_low(person):
     assert ahead > behind + 0.15, "beside the foot that pushed his hand is ahead"
 
 
+@pytest.mark.thorough
 def test_a_hair_more_of_stick_makes_no_other_leap(person):
     """From a hop on the spot by skips to a runner's leap: below 0.35 m/s he stopped and hopped 25 cm high, and at 1.2 m/s he flew twice as high as at 1.1."""
     risen = []

@@ -94,7 +94,7 @@ def test_the_nearest_place_to_one_that_can_be_leapt_to_is_that_one(locomotion, j
     for k in range(100):
         before = state
         state, _ = locomotion.step(state, wish, 1 / 60)
-        if k > 60 and k % 8 == 0:
+        if k > 60 and k % 16 == 0:
             moving = replace(state, previous=before.pose, elapsed=1 / 60)
             start = jump.start_of(moving)
             for far in (0.3, 0.6, 1.0, 1.5):

@@ -200,6 +200,7 @@ def leapt(person, pace, late, stays=False):
     return made, (np.array(way)[6:] - np.array(way)[:-6])[down + 3:down + 40] * FPS / 6, np.array(knees)[down:down + 12], (np.linalg.norm(hands, axis=-1).max(), np.abs(knee).max())
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("late", [0, 9, 19, 28, 38, 47])
 def test_who_walks_on_lands_on_one_foot_and_does_not_come_to_rest(person, late):
     """On two he stood still after every leap, 0.01 of his speed left, and squatted to 96°."""

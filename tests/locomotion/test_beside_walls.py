@@ -159,6 +159,7 @@ WALLS = {"a wall": (box((0.0, 1.0, 1.25), (6.0, 2.0, 0.5)), 0.0), "its corner": 
          "a pillar": (SimpleNamespace(foot=(0.0, 0.0, 1.3), radius=0.3, height=2.0), 0.02)}
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("speed", (0.7, 1.3, 2.8))
 @pytest.mark.parametrize("name", WALLS)
 def test_who_walks_on_at_a_wall_comes_to_rest_before_it(locomotion, name, speed):

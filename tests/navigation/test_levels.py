@@ -181,7 +181,7 @@ def test_who_stands_too_near_for_his_run_up_steps_back_for_it(someone):
     assert states[off - 1].velocity[0] > 1.2 and not states[-1].going.barred, "then he leaps from a walk, at once"
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("far, begins", [*((far, begins) for far in (1.2, 1.82, 2.1) for begins in (-1.2, 0.6, 1.17, 1.8)), (1.5, 0.6), (1.95, 1.8)])
 def test_whoever_is_sent_across_leaps_at_the_first_or_second_run_up(someone, far, begins):
     """Where he begins decides which of his steps ends at the edge; 1.17: so far before it as the room on a platform of 2 m lets him."""
@@ -235,6 +235,7 @@ def test_run_ups_begin_on_the_level_from_which_the_leap_goes_off(someone):
             assert (begins is not None) == (room and heading == 0.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("up", [0.2, 0.4])
 def test_run_ups_lead_onto_what_is_higher(someone, up):
     """Too far from a stand, and on."""
@@ -253,6 +254,7 @@ def test_who_went_back_for_a_run_up_makes_that_leap(someone):
     assert len(set(leaps)) == 1
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("wide", [0.01, 0.06, 0.12, 0.25])
 def test_crevices_are_stepped_over(someone, wide):
     things = (LONG[0], Box((0.0, 0.3, 5.0 + wide), (2.0, 0.6, 5.0)))

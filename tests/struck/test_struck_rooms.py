@@ -37,6 +37,7 @@ def deep(states, things):
     return max(float((thick - gap(points.reshape(-1, 3), thing).reshape(points.shape[:2])).max()) for thing in things)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("far", "hard"), [(0.5, 1.0), (0.7, 2.0), (1.6, 2.6)])
 def test_a_wall_holds_who_is_thrown_against_it(somebody, far, hard):
     """Near it he stays on his feet; farther off he falls; nothing of him is in it."""
