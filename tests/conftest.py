@@ -69,14 +69,15 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(config, items):
-    if not config.option.thorough:
+    every = config.option.thorough or config.getoption("--hypothesis-profile") == "seek"
+    if not every:
         named = {Path(arg.split("::")[0]).resolve() for arg in config.args}
         kept = {item for cases in _families(items) for item in _spread(cases)}
         left_out = [item for item in items if item.path not in named and (item.get_closest_marker("thorough") or item.get_closest_marker("few") and item not in kept)]
         config.hook.pytest_deselected(items=left_out)
         gone = set(left_out)
         items[:] = [item for item in items if item not in gone]
-    usual, share = settings().max_examples, 1.0 if config.option.thorough else 0.5
+    usual, share = settings().max_examples, 1.0 if every else 0.5
     for law in {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}:
         own = law._hypothesis_internal_use_settings
         tries = own.max_examples if own.max_examples == usual else math.ceil(share * own.max_examples)
@@ -94,8 +95,8 @@ def _families(items):
 
 def _spread(cases):
     """Those of a test's cases that are tried in any case: as many as its mark says, the first and the last among them."""
-    count = cases[0].get_closest_marker("few").args[0]
-    return {cases[round(k * (len(cases) - 1) / max(count - 1, 1))] for k in range(min(count, len(cases)))}
+    count = min(cases[0].get_closest_marker("few").args[0], len(cases))
+    return {cases[round(k * (len(cases) - 1) / max(count - 1, 1))] for k in range(count)}
 
 
 def pytest_sessionstart(session):

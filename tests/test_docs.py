@@ -164,14 +164,19 @@ def commands():
                 yield by_name(page), line.split(" #")[0].strip()
 
 
-@pytest.mark.parametrize("line", sorted(set(commands())), ids=lambda one: one[1])
-def test_commands_of_a_page_are_commands(line):
-    """With options that they have."""
+@cache
+def program():
     from typer.main import get_command
 
     from gambol.game.cli import app
 
-    command, words = get_command(app), shlex.split(line[1])[1:]
+    return get_command(app)
+
+
+@pytest.mark.parametrize("line", sorted(set(commands())), ids=lambda one: one[1])
+def test_commands_of_a_page_are_commands(line):
+    """With options that they have."""
+    command, words = program(), shlex.split(line[1])[1:]
     while hasattr(command, "commands"):
         command = command.commands[words.pop(0)]
     known = {name for option in command.params for name in (*option.opts, *option.secondary_opts)}

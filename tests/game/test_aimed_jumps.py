@@ -54,6 +54,7 @@ def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
     assert ends[0].floor == 0.0 and np.isfinite(ends[0].pose.root).all()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("ticks", [55, 69])
 @pytest.mark.parametrize("turn", [0.0, 1.0])
 def test_who_taps_it_in_the_midst_of_a_turn_sets_his_feet_is_told_so_and_leaps(somebody, ticks, turn):
@@ -258,7 +259,7 @@ def test_who_pushes_the_ring_far_onto_a_box_lands_on_it(somebody, high, away, ho
     assert not told and timeline.now.after.characters[0].state.floor == pytest.approx(high)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("body", [{}, {"height": 1.2}, {"height": 2.1}, {"strength": 0.7}, {"strength": 2.0}])
 def test_where_the_ring_stops_is_little_beyond_what_bodies_reach(somebody, body):
     who = person(physique=Physique(**body)) if body else somebody

@@ -41,7 +41,7 @@ def aloft(somebody, moments, since):
     return next((k * DT for k, state in enumerate(later) if state.active == "jump" and not np.any(state.contacts)), np.inf)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("delay", [0.1, 0.25, 0.4, 0.65])
 def test_who_lets_go_of_a_run_and_taps_leaps_on_off_the_next_foot(somebody, delay):
     """He neither stops first nor is told that it is too far for him, who brakes."""

@@ -100,6 +100,7 @@ def test_a_film_that_cannot_be_completed_stays_in_its_part(tmp_path):
     assert len(read(tmp_path / "a.part.mp4")[0]) == 1
 
 
+@pytest.mark.thorough
 def test_a_killed_recording_can_be_played(tmp_path):
     code = f"""
 import sys; sys.path[:0] = {sys.path!r}

@@ -84,7 +84,7 @@ def test_who_stands_near_a_box_and_taps_with_the_stick_at_it_leaps_onto_it(someb
     assert away[-1].floor == 0.0, "who holds no stick leaps where he stands"
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("near", [0.35, 0.65, 0.8, 1.1])
 def test_who_walks_at_a_box_and_taps_is_soon_on_it(somebody, near):
     """Wherever he taps: who was slow enough to aim from a stand first came to a stop, and 2.5 s went by."""

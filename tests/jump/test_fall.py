@@ -163,7 +163,7 @@ def test_who_walks_over_an_edge_falls_and_walks_on(jump, locomotion, high, speed
     assert state.memory.active == "locomotion" and float(state.floor) == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("high", "speed", "begins"), [(0.6, 2.4, 0.6), (0.9, 2.4, 0.0), (0.9, 2.8, 0.15), (0.9, 3.5, 0.75), (1.2, 2.8, 0.3)])
 def test_who_runs_off_a_ramps_end_runs_on_as_anywhere(jump, locomotion, high, speed, begins):
     """The foot that leaves as he runs on from the landing is led over what lies before it, not over what lies between it and the world's middle: knees were thrown at 5000 m/s²."""
@@ -182,7 +182,7 @@ def test_who_runs_off_a_ramps_end_runs_on_as_anywhere(jump, locomotion, high, sp
     assert np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1).max() * FPS**2 < 450.0
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("speed", "high", "shift"), [(0.8, 1.0, 0.6), (1.8, 1.0, 0.3), (1.8, 0.6, 1.2), (2.5, 0.6, 0.1), (2.8, 0.5, 0.0), (3.0, 1.0, 0.3), (4.0, 2.0, 0.75)])
 def test_nobody_is_led_down_the_air(jump, locomotion, speed, high, shift):
     """From the moment on at which no foot touches ground any more, whoever came over an edge falls as everything does."""
@@ -301,7 +301,7 @@ def test_a_push_off_an_edge_begins_with_the_speed_that_is_there_and_pushes_along
     np.testing.assert_allclose(made.centres[air, 1], start.centre[1] - 0.2 * made.times[air] + 0.5 * jump.gravity[1] * made.times[air] ** 2, atol=1e-9)
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("high", (0.2, 0.28, 0.299, 0.303, 0.31, 0.33, 0.36))
 @pytest.mark.parametrize("speed", (0.7, 1.3))
 def test_nobody_walks_on_air_whatever_the_height_of_the_ledge(jump, locomotion, high, speed):

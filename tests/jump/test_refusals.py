@@ -29,6 +29,7 @@ def courses(monkeypatch):
     return found
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("ahead", "high", "far", "most"), [(0.7, 0.5, 1.6, 100), (0.9, 0.5, 2.0, 130), (0.6, 0.3, 2.4, 90)])
 def test_who_stands_before_a_hurdle_is_refused_by_few_courses(jump, standing, courses, ahead, high, far, most):
     place = np.array([standing.ground[0], 0.0, standing.ground[1] + far])

@@ -95,7 +95,7 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
         assert again.refused == then.refused and np.array_equal(again.pose.rotations, then.pose.rotations)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("crouches", [False, True])
 @pytest.mark.parametrize("speed", [1e-4, 0.1, 0.5])
 def test_a_place_that_moves_is_leapt_to_where_it_is_then(someone, monkeypatch, speed, crouches):

@@ -45,7 +45,7 @@ def leapt(person, state, leap, velocity=(0.0, 0.0, 0.0)):
     return told[:-1], len(told) / FPS, states
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("far", [None, 0.9])
 @pytest.mark.parametrize(("velocity", "seconds"), MIDST)
 def test_legs_stay_apart_in_a_leap_out_of_a_turn_or_a_step_aside(person, velocity, seconds, far):

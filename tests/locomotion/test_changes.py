@@ -147,6 +147,7 @@ def test_every_speed_is_met(locomotion, speed):
     assert mean_velocity(motion.ground[240:])[0, 0] == pytest.approx(speed, abs=0.02)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rates", ((30, 144), (60, 240)), ids=str)
 def test_a_script_ends_where_it_ends_at_any_rate(locomotion, rates):
     ends = []
@@ -271,7 +272,7 @@ def test_feet_of_a_run_that_becomes_a_walk_come_to_stand_evenly(locomotion, befo
     assert longest < 8
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("wish", [(0, 0, 0.45), (0, 0, -0.45), (0, 1.5, 0), (-0.6, 0, 0), (0, 0, 0)])
 def test_nobody_goes_on_running_who_does_not_ask_for_it(locomotion, wish):
     """At whatever moment of a run something slow is asked for, it is walked two seconds later."""

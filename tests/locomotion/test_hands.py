@@ -54,7 +54,7 @@ def test_nobody_is_carried_through_the_air_as_gaits_change(locomotion):
     assert max(longest(~stands[:, n]) for n in range(stands.shape[1])) < FLIGHT * FPS
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("before", [(1.3, 0, 0), (1.3, 1.0, 0), (1.8, 0, 0), (1.8, -1.2, 0)])
 def test_hips_do_not_jerk_as_both_feet_come_to_stand(locomotion, before):
     """The gait stands still from a tick to the next: its movement goes over into what fades."""

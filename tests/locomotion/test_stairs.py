@@ -49,6 +49,7 @@ def test_feet_find_the_treads_of_any_stairs(locomotion, rise, tread, height, spe
     finds_the_treads(locomotion, rise, tread, height, speed)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("rise, width, height, speed, askew", ((0.15, 6.0, 1.74, 3.0, 0.0), (0.16, 1.0, 1.74, 2.0, 0.0),
                                                                (0.12, 0.9, 1.5, 3.0, 0.0), (0.16, 6.0, 1.2, 2.5, 0.0), (0.16, 2.0, 1.9, 3.0, 40.0)))
 def test_who_runs_goes_on_running_over_a_kerb(locomotion, rise, width, height, speed, askew):

@@ -57,7 +57,7 @@ def test_swinging_feet_change_neither_speed_nor_acceleration_at_once(locomotion)
     assert np.quantile(off, 0.999) < 0.1, "speeds go as accelerations say [m/s]"
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("before", "after"), [((0.6, 0, 0.35), (0.6, 0, -0.35)), ((0.6, 0, -0.35), (0, 1.5, 0)), ((0, 0, 0.45), (0, 0, -0.45))],
                          ids=str)
 def test_feet_pass_each_other_at_a_distance(locomotion, before, after):

@@ -25,7 +25,7 @@ from gambol.controllers.supervisor import Duty
 from gambol.game.world.followers import Follows, carried
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("points", [*SETS, "lwrist,rwrist,Head+0/0.09/0.09"])
 def test_a_clip_that_is_in_the_database_is_followed(known, clip, points):
     controller = build(known, points)
@@ -218,7 +218,7 @@ def test_the_same_state_and_points_give_the_same_pose_and_rewinding_replays(foll
         states[0].memory.lost = 1.0
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rate", [30, 45, 90, 120, 144])
 def test_other_frame_rates_show_the_same_motion(follower, clip, points, rate):
     """Within a frame's way of it: points are seen when they are seen."""

@@ -123,6 +123,7 @@ def test_the_solver_falls_along_its_energy(seed):
         assert abs(-0.5 * slope - fall[d]) <= 2e-4 * max(1.0, abs(fall).max())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("points", "turning", "bound"), [("6", False, 0.05), ("6", True, 0.04), ("4", False, 0.12), (HEAD_AND_HANDS, True, 0.2)])
 def test_a_walk_is_found_from_nothing(walk, points, turning, bound):
     _, _, positions, orientations = walk

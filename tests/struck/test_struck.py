@@ -127,7 +127,7 @@ def test_who_walks_goes_on_walking(somebody, impulse):
     assert abs(states[-1].velocity[0] - 1.2) < 0.02 and all(np.isfinite(s.pose.root).all() and np.isfinite(s.pose.rotations).all() for s in states)
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.2, 0.0)), (1.2, (-0.2, 0.1)), (1.2, (0.0, 0.75)), (1.2, (0.0, -0.6)), (1.2, (0.65, 0.0)),
                                                (3.0, (0.4, 0.0)), (3.0, (-0.75, 0.0)), (3.0, (0.0, 1.1)), (3.0, (0.0, -0.55)), (3.0, (0.0, 1.55)),
                                                (3.0, (0.0, -1.35))])
@@ -150,7 +150,7 @@ def test_who_walks_or_runs_takes_a_push_in_stride(somebody, speed, gained):
         assert points[..., 1].min() > 0.015
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.8, 0.0)), (1.2, (0.0, -0.9)), (1.2, (0.0, 0.9)), (3.0, (1.0, 0.0)), (3.0, (0.0, 1.8)), (3.0, (0.0, -1.5))])
 def test_what_is_harder_is_no_longer_taken_in_stride(somebody, speed, gained):
     state = after(somebody, (speed, 0.0, 0.0), 2.0)

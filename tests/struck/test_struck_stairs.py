@@ -118,7 +118,7 @@ def test_lying_bends_and_begins_as_he_was_struck(somebody):
     assert one.fate == FALLS and np.array_equal(one.local, other.local) and np.allclose(one.roots, other.roots)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("dt", [1 / 240, 1 / 60, 1 / 30, 0.09, 0.1])
 def test_a_fall_is_bent_in_a_few_rounds_a_step_and_what_was_shown_stays(somebody, dt):
     """No step does more than its share of the rounds, and every state is that of the fall as it is in the end."""
@@ -151,7 +151,7 @@ def test_the_band_is_solved_as_the_whole_matrix_would_be(seed):
     assert np.allclose(whole @ found, right, atol=1e-9)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("towards", [0.6, 1.6, -1.2])
 @pytest.mark.parametrize("hard", [1.9, 2.2])
 def test_who_has_got_up_on_a_platform_sets_his_feet_where_people_stand(somebody, towards, hard):
