@@ -117,7 +117,6 @@ def test_the_trail_is_bounded():
     assert len(end.characters[0].trail) <= 150
 
 
-@pytest.mark.thorough
 def test_importing_the_game_opens_nothing():
     """No window, no GL: importing any of this must be safe on a machine without a display."""
     import subprocess

@@ -90,13 +90,13 @@ def test_cut_off_it_goes_on_the_same(own, tmp_path):
 def test_the_command_teaches_and_the_network_is_taken(own, tmp_path):
     """It is no surer than of half of what it was, and bends no joint less."""
     out = tmp_path / "mine.npz"
-    done = CliRunner().invoke(cli.app, ["database", "tune", str(own[0]), "-o", str(out), "--batches", "3", "--share", "0.01"])
+    done = CliRunner().invoke(cli.app, ["database", "tune", str(own[0]), "-o", str(out), "--batches", "10", "--share", "0.01"])
     assert done.exit_code == 0, done.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.npz"]
     assert usual("4", out, True) == SHIPPED and usual("4", own[0]) == "ours" and usual("4", own[0], True) == "turning"
     network = methods(out)(SHIPPED, "4")[0].network
     every = np.ones(len(PLACES), bool)
-    assert network.learnt == 3 and not np.array_equal(network.weights[0], shipped().weights[0])
+    assert network.learnt == 10 and not np.array_equal(network.weights[0], shipped().weights[0])
     assert (np.diagonal(network.spread(every, every)) > 0.49 * np.diagonal(shipped().spread(every, every))).all()
     assert (network.lower <= shipped().lower + 1e-6).all() and (network.upper >= shipped().upper - 1e-6).all()
 
