@@ -272,7 +272,7 @@ def test_scenarios_are_listed():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows reports a closed pipe in another way")
 def test_a_reader_who_has_had_enough_is_no_mistake():
-    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['scenarios']; from gambol.game.cli import main; main()"
+    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['--help']; from gambol.game.cli import main; main()"
     done = subprocess.run([sys.executable, "-u", "-c", code], capture_output=True, text=True)
     assert done.stderr == "" and done.returncode == 1
 

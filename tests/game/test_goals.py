@@ -45,7 +45,6 @@ def walker():
     return Supervisor({"locomotion": Locomotion.load()})
 
 
-@pytest.mark.thorough
 def test_a_scenario_sends_somebody_from_goal_to_goal(walker, tmp_path):
     scenario = load(written(tmp_path, SCENARIO))
     move = scenario.actors[0].moves[1].move()

@@ -100,7 +100,6 @@ def test_who_skips_ahead_swings_his_arms_by_turns_and_low(person):
     assert ahead > behind + 0.15, "beside the foot that pushed his hand is ahead"
 
 
-@pytest.mark.thorough
 def test_a_hair_more_of_stick_makes_no_other_leap(person):
     """From a hop on the spot by skips to a runner's leap: below 0.35 m/s he stopped and hopped 25 cm high, and at 1.2 m/s he flew twice as high as at 1.1."""
     risen = []
