@@ -25,6 +25,7 @@ import pytest  # noqa: E402
 from hypothesis import HealthCheck, is_hypothesis_test, settings  # noqa: E402
 
 from sampling import BATCHES, KINDS  # noqa: E402
+from tiers import left_out  # noqa: E402
 
 for name, same, tries in (("gambol", True, 40), ("thorough", True, 100), ("seek", False, 100)):  # a busy machine breaks no law, and fixtures here are values
     settings.register_profile(name, derandomize=same, max_examples=tries, database=None, deadline=None, print_blob=True,
@@ -71,32 +72,14 @@ def pytest_configure(config):
 def pytest_collection_modifyitems(config, items):
     every = config.option.thorough or config.getoption("--hypothesis-profile") == "seek"
     if not every:
-        named = {Path(arg.split("::")[0]).resolve() for arg in config.args}
-        kept = {item for cases in _families(items) for item in _spread(cases)}
-        left_out = [item for item in items if item.path not in named and (item.get_closest_marker("thorough") or item.get_closest_marker("few") and item not in kept)]
-        config.hook.pytest_deselected(items=left_out)
-        gone = set(left_out)
+        gone = left_out(items, config.args)
+        config.hook.pytest_deselected(items=[item for item in items if item in gone])
         items[:] = [item for item in items if item not in gone]
     usual, share = settings().max_examples, 1.0 if every else 0.5
     for law in {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}:
         own = law._hypothesis_internal_use_settings
         tries = own.max_examples if own.max_examples == usual else math.ceil(share * own.max_examples)
         law._hypothesis_internal_use_settings = settings(own, max_examples=tries * config.option.times)
-
-
-def _families(items):
-    """The cases of each test that is marked `few`, in their order."""
-    found = {}
-    for item in items:
-        if item.get_closest_marker("few"):
-            found.setdefault((item.path, item.originalname), []).append(item)
-    return found.values()
-
-
-def _spread(cases):
-    """Those of a test's cases that are tried in any case: as many as its mark says, the first and the last among them."""
-    count = min(cases[0].get_closest_marker("few").args[0], len(cases))
-    return {cases[round(k * (len(cases) - 1) / max(count - 1, 1))] for k in range(count)}
 
 
 def pytest_sessionstart(session):
