@@ -2,7 +2,8 @@
 
     python3 scripts/test.py [--thorough] [arguments of pytest]
 
-Without arguments all tests are run, on as many cores as there are, up to eight. With --thorough alone also the cases that are left out of families of slow ones.
+Without arguments the tests are run on as many cores as there are, up to eight; with --thorough alone also those that see more widely what a quicker one sees, and all cases
+of families of slow ones.
 """
 
 import sys

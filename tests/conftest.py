@@ -5,6 +5,7 @@ The examples are the same in every run; `scripts/seek.py` seeks new ones.
 The recorded motion is no part of the project.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -24,6 +25,7 @@ import pytest  # noqa: E402
 from hypothesis import HealthCheck, is_hypothesis_test, settings  # noqa: E402
 
 from sampling import BATCHES, KINDS  # noqa: E402
+from tiers import left_out  # noqa: E402
 
 for name, same, tries in (("gambol", True, 40), ("thorough", True, 100), ("seek", False, 100)):  # a busy machine breaks no law, and fixtures here are values
     settings.register_profile(name, derandomize=same, max_examples=tries, database=None, deadline=None, print_blob=True,
@@ -56,39 +58,28 @@ def batch(request):
 
 def pytest_addoption(parser):
     parser.addoption("--times", type=int, default=1, help="try each law on so many times the examples")
-    parser.addoption("--thorough", action="store_true", help="try all cases of tests that are marked `few`, too, laws on more examples, and films of many people to their ends")
+    parser.addoption("--thorough", action="store_true", help="try what is marked `thorough` and all cases of what is marked `few`, too, laws on more examples, and films of many people to their ends")
 
 
 def pytest_configure(config):
     if config.option.thorough:
         settings.load_profile("thorough")
-    config.addinivalue_line("markers", "few(count): all cases tell of one thing and each takes seconds: so many of them, spread evenly, unless --thorough or a case is named")
+    for mark in ("few(count): all cases tell of one thing and each takes long: so many of them, spread evenly, unless --thorough or its file is named",
+                 "thorough: tells more widely of what a quicker test fails for, too, if it breaks: only with --thorough or where its file is named"):
+        config.addinivalue_line("markers", mark)
 
 
 def pytest_collection_modifyitems(config, items):
-    if not config.option.thorough and not any("[" in arg for arg in config.args):
-        left_out = {item for cases in _families(items) for item in cases if item not in _spread(cases)}
-        config.hook.pytest_deselected(items=list(left_out))
-        items[:] = [item for item in items if item not in left_out]
-    laws = {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}
-    for law in laws if config.option.times > 1 else ():
+    every = config.option.thorough or config.getoption("--hypothesis-profile") == "seek"
+    if not every:
+        gone = left_out(items, config.args)
+        config.hook.pytest_deselected(items=[item for item in items if item in gone])
+        items[:] = [item for item in items if item not in gone]
+    usual, share = settings().max_examples, 1.0 if every else 0.5
+    for law in {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}:
         own = law._hypothesis_internal_use_settings
-        law._hypothesis_internal_use_settings = settings(own, max_examples=own.max_examples * config.option.times)
-
-
-def _families(items):
-    """The cases of each test that is marked `few`, in their order."""
-    found = {}
-    for item in items:
-        if item.get_closest_marker("few"):
-            found.setdefault((item.path, item.originalname), []).append(item)
-    return found.values()
-
-
-def _spread(cases):
-    """Those of a test's cases that are tried in any case: as many as its mark says, the first and the last among them."""
-    count = cases[0].get_closest_marker("few").args[0]
-    return {cases[round(k * (len(cases) - 1) / max(count - 1, 1))] for k in range(min(count, len(cases)))}
+        tries = own.max_examples if own.max_examples == usual else math.ceil(share * own.max_examples)
+        law._hypothesis_internal_use_settings = settings(own, max_examples=tries * config.option.times)
 
 
 def pytest_sessionstart(session):

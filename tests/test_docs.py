@@ -121,7 +121,7 @@ def test_the_house_names_every_room():
 
 @pytest.mark.parametrize("page", [page for page in PAGES if page.parent == ROOT], ids=by_name)
 def test_links_of_pages_outside_the_site_lead_somewhere(page):
-    """Those within it are followed as the site is built."""
+    """Those within it may lead to rooms."""
     for link in LINK.findall(prose(page)):
         if not link.startswith(("http", "#")):
             assert (page.parent / link.split("#")[0]).exists(), link
@@ -164,22 +164,61 @@ def commands():
                 yield by_name(page), line.split(" #")[0].strip()
 
 
-@pytest.mark.parametrize("line", sorted(set(commands())), ids=lambda one: one[1])
-def test_commands_of_a_page_are_commands(line):
-    """With options that they have."""
+@cache
+def program():
     from typer.main import get_command
 
     from gambol.game.cli import app
 
-    command, words = get_command(app), shlex.split(line[1])[1:]
+    return get_command(app)
+
+
+@pytest.mark.parametrize("line", sorted(set(commands())), ids=lambda one: one[1])
+def test_commands_of_a_page_are_commands(line):
+    """With options that they have."""
+    command, words = program(), shlex.split(line[1])[1:]
     while hasattr(command, "commands"):
         command = command.commands[words.pop(0)]
     known = {name for option in command.params for name in (*option.opts, *option.secondary_opts)}
     assert {word for word in words if word.startswith("-")} <= known
 
 
+SITE = sorted((ROOT / "docs").rglob("*.md"))
+
+
+def anchors(page):
+    """Those of a page's headings, as MkDocs makes them; of what it takes in, too."""
+    toc = pytest.importorskip("markdown.extensions.toc", reason="MkDocs is not installed: pip install -e '.[test]'")
+    text = FENCE.sub(lambda block: (ROOT / taken[1]).read_text("utf-8") if (taken := re.search(r'--8<-- "([^"]+)"', block[0])) else "", page.read_text("utf-8"))
+    text = re.sub(r'^--8<-- "([^"]+)"', lambda taken: (ROOT / taken[1]).read_text("utf-8"), text, flags=re.M)
+    return {toc.slugify(re.sub(r"[`*]", "", heading), "-") for heading in re.findall(r"^#+ (.+)$", text, re.M)}
+
+
+@pytest.mark.parametrize("page", SITE, ids=by_name)
+def test_links_of_pages_within_the_site_lead_somewhere(page):
+    """To a page, or the page that is made of a room's docstrings, and to a heading on it."""
+    for link in LINK.findall(prose(page)):
+        if not link.startswith("http"):
+            path, _, anchor = link.partition("#")
+            there = (page.parent / path).resolve() if path else page
+            if there.parent == ROOT / "docs" / "api":
+                assert there.stem == "index" or there_is(f"gambol.{there.stem}"), link
+            else:
+                assert there.exists() and (not anchor or there.suffix != ".md" or anchor in anchors(there)), link
+
+
+def test_every_page_is_in_the_menu():
+    yaml = pytest.importorskip("yaml", reason="MkDocs is not installed: pip install -e '.[test]'")
+
+    def pages(menu):
+        for item in menu:
+            yield from [item] if isinstance(item, str) else (page for part in item.values() for page in ([part] if isinstance(part, str) else pages(part)))
+    assert sorted(pages(yaml.safe_load((ROOT / "mkdocs.yml").read_text("utf-8"))["nav"])) == sorted(page.relative_to(ROOT / "docs").as_posix() for page in SITE)
+
+
+@pytest.mark.thorough
 def test_the_site_builds_without_a_warning(tmp_path):
-    """Every link and anchor is followed, and every page is in the menu: ten to twenty seconds."""
+    """Every link and anchor is followed, those of docstrings, too: ten to twenty seconds."""
     pytest.importorskip("mkdocs", reason="MkDocs is not installed: pip install -e '.[test]'")
     pytest.importorskip("mkdocstrings_handlers.python", reason="mkdocstrings is not installed: pip install -e '.[test]'")
     done = subprocess.run([sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path / "site")],

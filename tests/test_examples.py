@@ -1,5 +1,6 @@
 """The examples run, and do what they say."""
 
+import ast
 import base64
 import importlib.util
 import io
@@ -110,10 +111,30 @@ def test_export_example(tmp_path):
         assert found[name]["joints"] == len(human()) and found[name]["frames"] == 90 and 0.8 < found[name]["metres"] < 2.0
 
 
-def test_film_example(drawing):
+def in_this_process(notebook):
+    """What the cells of a notebook show as HTML, one after the other."""
+    pytest.importorskip("IPython", reason="IPython is not installed: pip install -e '.[test]'")
+    names = {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            *before, last = ast.parse(cell.source).body
+            exec(compile(ast.Module(before if isinstance(last, ast.Expr) else [*before, last], []), "film.ipynb", "exec"), names)
+            shown = eval(compile(ast.Expression(last.value), "film.ipynb", "eval"), names) if isinstance(last, ast.Expr) else None
+            if hasattr(shown, "_repr_html_"):
+                yield shown._repr_html_()
+
+
+def in_a_kernel(notebook):
+    client = pytest.importorskip("nbclient", reason="nbclient is not installed: pip install -e '.[test]'")
+    client.NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
+    return [output.data["text/html"] for cell in notebook.cells for output in cell.get("outputs", ())
+            if output.output_type == "execute_result" and "text/html" in output.data]
+
+
+@pytest.mark.parametrize("run", [in_this_process, pytest.param(in_a_kernel, marks=pytest.mark.thorough)])
+def test_film_example(drawing, run):
     """The notebook from top to bottom, its parameters made small; the films in its outputs can be played."""
     nbformat = pytest.importorskip("nbformat", reason="nbformat is not installed: pip install -e '.[test]'")
-    client = pytest.importorskip("nbclient", reason="nbclient is not installed: pip install -e '.[test]'")
     import av
 
     notebook = nbformat.read(EXAMPLES / "film.ipynb", 4)
@@ -121,10 +142,7 @@ def test_film_example(drawing):
     assert not any(cell.get("outputs") for cell in notebook.cells), "kept without outputs"
     parameters = next(cell for cell in notebook.cells if "parameters" in cell.metadata.get("tags", ()))
     parameters.source = "seconds, size, fps = 2.5, (128, 96), 10"
-    client.NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
-    shown = [output.data["text/html"] for cell in notebook.cells for output in cell.get("outputs", ())
-             if output.output_type == "execute_result" and "text/html" in output.data]
-    films = [base64.b64decode(re.search(r"base64,([^\"]+)", html)[1]) for html in shown]
+    films = [base64.b64decode(re.search(r"base64,([^\"]+)", html)[1]) for html in run(notebook)]
     frames = [[f.to_ndarray(format="gray") for f in av.open(io.BytesIO(film)).decode(video=0)] for film in films]
     assert [len(film) for film in frames] == [25, 25]
     assert all(np.abs(film[0].astype(int) - film[-1]).mean() > 1.0 for film in frames), "something moves"

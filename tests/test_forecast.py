@@ -36,6 +36,7 @@ def footprints(walker, state, wish, seconds):
         yield (down[0] + 1) / 60, balls[(down[0] + until - 1) // 2, foot]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("wish", [(1.3, 0.0, 0.0), (0.8, 0.9, 0.0), (3.0, 0.0, 0.0), (0.0, 0.0, 0.4), (-0.5, 0.0, 0.0)])
 def test_feet_come_down_where_it_is_foretold(walker, wish):
     state = after(walker, walker.start((0.4, -0.2, 0.7)), (1.0, 0.3, 0.0), 2.35)

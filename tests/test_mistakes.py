@@ -110,6 +110,7 @@ def test_no_reader_waits_for_a_pipe_or_reads_a_device_or_folder(tmp_path, name):
         assert str(told.value).startswith(str(path)) and "\n" not in str(told.value)
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("name", [name for name in READERS if name.endswith(".toml")])
 @pytest.mark.parametrize("text", ["a = " + "[" * 20_000, "a = " + "{a=" * 20_000, "[" + "a." * 20_000])
 def test_brackets_nested_deeply_are_told_of(tmp_path, name, text):

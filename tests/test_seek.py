@@ -31,10 +31,10 @@ def seek(tmp_path, *arguments):
 
 
 def test_a_law_that_is_none_is_found_and_shown_again(tmp_path):
-    code, said = seek(tmp_path, "--seed", "7", "--times", "50")
+    code, said = seek(tmp_path, "--seed", "7", "--times", "20")
     assert code == 1 and said.endswith("laws broken in 1 rounds: 1\n")
     told, = (line for line in said.splitlines() if "test_nearly_always fails 1 times: python -m pytest" in line)
-    assert "--hypothesis-seed=7 " in told and "--times=50 " in told
+    assert "--hypothesis-seed=7 " in told and "--times=20 " in told
 
 
 def test_no_law_broken_is_told_by_the_exit_code_and_other_tests_are_not_run(tmp_path):

@@ -106,6 +106,7 @@ def person():
     return Supervisor({"locomotion": Locomotion.load(), "jump": Jump()})
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("speed", "far"), [(0.0, 0.7), (1.2, 1.1), (1.37, 1.1), (2.8, 2.2)])
 def test_walking_jumping_and_walking_on_are_one_motion(person, speed, far):
     """No joint moves faster at a hand-over than bodies do, and none leaves its way between two frames."""

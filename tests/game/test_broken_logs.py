@@ -19,11 +19,17 @@ from gambol.game.session.settings import SETTINGS
 from logged import GLIDE, play, walk
 
 
-@pytest.mark.parametrize("place", [0.2, 0.5, 0.8])
-def test_damage_in_the_middle_is_told_with_its_line(tmp_path, place):
-    path = tmp_path / "a.gambol"
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A log of ten seconds."""
+    path = tmp_path_factory.mktemp("log") / "a.gambol"
     play(path, walk(600))
-    data = bytearray(path.read_bytes())
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.8])
+def test_damage_in_the_middle_is_told_with_its_line(whole, tmp_path, place):
+    path, data = tmp_path / "a.gambol", bytearray(whole)
     at = int(place * len(data))
     data[at] = data[at] ^ 0x40
     path.write_bytes(data)

@@ -114,6 +114,7 @@ def test_no_eye_is_ever_in_the_character(start, walk):
         assert math.hypot(eye[0] - ground[0], eye[2] - ground[1]) > 0.45 or eye[1] > 1.75
 
 
+@pytest.mark.few(4)
 @KINDS
 @pytest.mark.parametrize("steps", [5, 30, 144])
 def test_the_camera_arrives_at_the_same_view_at_any_frame_rate(start, steps):

@@ -124,6 +124,7 @@ def test_motion(short, tmp_path):
     assert (tmp_path / "b-A.bvh").exists() and (tmp_path / "b-B.bvh").exists()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("command", [("render", "a.mp4"), ("render", "a.bvh"), ("export", "a.glb"), ("strip", "a.png"), ("film", "footage"),
                                      ("gallery", "page")])
 def test_what_nobody_could_do_is_told_whatever_is_written(short, tmp_path, command, monkeypatch):
@@ -271,7 +272,7 @@ def test_scenarios_are_listed():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows reports a closed pipe in another way")
 def test_a_reader_who_has_had_enough_is_no_mistake():
-    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['scenarios']; from gambol.game.cli import main; main()"
+    code = "import os, sys; r, w = os.pipe(); os.close(r); os.dup2(w, 1); sys.argv[1:] = ['--help']; from gambol.game.cli import main; main()"
     done = subprocess.run([sys.executable, "-u", "-c", code], capture_output=True, text=True)
     assert done.stderr == "" and done.returncode == 1
 

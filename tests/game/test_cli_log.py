@@ -104,6 +104,7 @@ def test_a_mistake_is_one_line_and_leaves_nothing(log, arguments, says, monkeypa
     assert [p.name for p in tmp_path.iterdir()] == ["a.gambol"] and log.read_bytes() == before
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("end", [None, RuntimeError("the driver is gone"), DisplayError("no display")])
 def test_what_was_played_is_kept_however_the_window_ends(log, tmp_path, monkeypatch, end):
     def window(app, size, preset):

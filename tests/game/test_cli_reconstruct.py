@@ -43,6 +43,14 @@ def motion(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def brief(motion, tmp_path_factory):
+    """A second of that clip."""
+    file = tmp_path_factory.mktemp("brief") / "clip.bvh"
+    write_bvh(motion[2].slice(0, 60), file)
+    return file
+
+
+@pytest.fixture(scope="module")
 def misread(motion, tmp_path_factory):
     """Files that are no performance: no motion, of somebody who lacks a leg, and too short."""
     folder, (_, _, clip) = tmp_path_factory.mktemp("misread"), motion
@@ -56,9 +64,10 @@ def misread(motion, tmp_path_factory):
     return files
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("suffix", [".bvh", ".glb"])
-def test_a_clip_from_its_points(motion, tmp_path, suffix):
-    database, file, clip = motion
+def test_a_clip_from_its_points(motion, brief, tmp_path, suffix):
+    database, file, clip = motion[0], brief, motion[2].slice(0, 60)
     out = tmp_path / f"out{suffix}"
     done = gambol("reconstruct", file, "--points", "lwrist,rwrist,lankle,rankle", "--method", "nearest", "--database", database, "-o", out)
     assert done.exit_code == 0, done.output
@@ -74,6 +83,7 @@ def test_a_clip_from_its_points(motion, tmp_path, suffix):
 def test_a_clip_that_is_misread_is_read_as_told(motion, tmp_path):
     """A small child in centimetres has legs as long as an adult's in inches; who is read as few are is told of."""
     database, _, clip = motion
+    clip = clip.slice(0, 60)
     write_bvh(replace(clip, skeleton=clip.skeleton.scaled(0.45), root=0.45 * clip.root), tmp_path / "child.bvh")
     said = {}
     for told in ((), ("--unit", "cm"), ("--unit", "cm", "--up", "Y")):
@@ -84,11 +94,10 @@ def test_a_clip_that_is_misread_is_read_as_told(motion, tmp_path):
     assert not any("read as with" in said[told] for told in said if told)
 
 
-def test_noise_is_the_same_for_the_same_seed(motion, tmp_path):
-    database, file, _ = motion
-    said = {}
+def test_noise_is_the_same_for_the_same_seed(motion, brief, tmp_path):
+    database, said = motion[0], {}
     for seed in (1, 1, 2):
-        done = gambol("reconstruct", file, "--noise", 2, "--seed", seed, "--method", "nearest", "--database", database, "-o", tmp_path / "o.bvh")
+        done = gambol("reconstruct", brief, "--noise", 2, "--seed", seed, "--method", "nearest", "--database", database, "-o", tmp_path / "o.bvh")
         said.setdefault(seed, set()).add((tmp_path / "o.bvh").read_text())
         assert done.exit_code == 0
     assert len(said[1]) == 1 and said[1] != said[2]
@@ -207,6 +216,7 @@ def walked(made):
 ENDS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if os.name != "nt" and hasattr(signal, name)]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("end", [None, *ENDS])
 def test_streams_are_recorded_until_they_are_ended_and_never_lost(stream, end, request):
     """By Ctrl-C, by whoever ends the program from outside, and when the time is up."""

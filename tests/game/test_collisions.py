@@ -131,6 +131,7 @@ def test_two_strikes_in_one_step_of_a_script_are_one(somebody):
     assert intent.strike is not None and np.allclose(intent.strike.impulse, (6.0, 25.0))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("turn", [0.0, 0.5, 2.0])
 @pytest.mark.parametrize("far", [0.9, 1.3])
 def test_who_falls_falls_beside_who_stands_there(somebody, far, turn):

@@ -120,6 +120,7 @@ def test_an_orbit_goes_as_far_round_as_it_is_told(finely):
     assert np.degrees(turned) == pytest.approx(-90, abs=5)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("fps", [10, 30])
 def test_another_frame_rate_films_from_the_same_places(tmp_path, finely, fps):
     _, other = filmed(tmp_path, fps=fps, shown=Overlays())

@@ -174,6 +174,7 @@ def test_dropped_frames_are_none(footage, tmp_path):
     assert [one is None for one in seen_in(read_footage(broken), 2)] == [False, False, True]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", ["frame", "mask"])
 def test_lost_frames_are_told_and_gone_over_as_far_as_others_tell(footage, tmp_path, kind):
     broken, words = copied(footage, tmp_path / "one"), ["--masks"] if kind == "mask" else []

@@ -41,6 +41,7 @@ def aloft(somebody, moments, since):
     return next((k * DT for k, state in enumerate(later) if state.active == "jump" and not np.any(state.contacts)), np.inf)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("delay", [0.1, 0.25, 0.4, 0.65])
 def test_who_lets_go_of_a_run_and_taps_leaps_on_off_the_next_foot(somebody, delay):
     """He neither stops first nor is told that it is too far for him, who brakes."""
@@ -49,6 +50,7 @@ def test_who_lets_go_of_a_run_and_taps_leaps_on_off_the_next_foot(somebody, dela
     assert aloft(somebody, moments, 1.8 + delay) < 0.7
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("delay", [0.1, 0.3, 0.5])
 def test_who_throws_the_stick_back_in_a_run_and_taps_leaps_and_then_turns_back(somebody, delay):
     run, back = Wish(move=AHEAD, run=RUN), Wish(move=BACK, run=RUN)
@@ -64,6 +66,7 @@ def test_who_holds_the_button_in_a_run_and_lets_go_of_the_stick_stops(somebody):
     assert np.hypot(*last.velocity[[0, 2]]) < 0.1 and np.all(last.contacts) and aloft(somebody, moments, 0.0) == np.inf
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("walks", [1.2, 1.6, 2.5])
 def test_who_is_held_up_before_a_box_and_taps_leaps_onto_it(somebody, walks):
     go = Wish(move=AHEAD)
@@ -92,6 +95,7 @@ def test_who_waits_to_leap_and_tilts_the_stick_elsewhere_goes_there_at_once(some
         assert max(state.floor for state in states(played(somebody, (BOX,), start, *tap, *held))) == pytest.approx(0.3)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("plan, soon", [(((1.0, Wish()), (0.1, Wish(jump=True)), (0.8, Wish()), (1.5, Wish(move=AHEAD))), 0.75), (((1.0, Wish()), (1.0, Wish(move=AHEAD, jump=True)), (2.0, Wish(move=AHEAD))), 0.7)])
 def test_who_holds_the_stick_as_he_lands_on_both_feet_walks_on_as_he_rises(somebody, plan, soon):
     """After a hop, and a leap as far as he can: he stood up first, and then set off."""

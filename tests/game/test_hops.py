@@ -53,6 +53,7 @@ def _pose(plan):
     return pose.root, pose.rotations
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("on, lands, airtimes", [("left", [0, 0, None], [0.26] * 3), ("alternate", [0, 1, None], [0.26] * 3), ("skip", [0, 0, 1, None], [0.12, 0.26, 0.12, 0.26])])
 def test_hops_are_on_the_feet_that_the_script_says(tmp_path, on, lands, airtimes):
     text = TEXT.replace("{ hops = 2, airtime = 0.4 }, { hops = 3, ahead = 0.4, airtime = 0.3 }", f'{{ hops = {len(lands)}, on = "{on}", ahead = 0.4, airtime = 0.26 }}')

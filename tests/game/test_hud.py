@@ -33,6 +33,7 @@ def game(locomotion):
     played.close()
 
 
+@pytest.mark.thorough
 def test_who_opens_no_panel_never_loads_imgui():
     done = subprocess.run([sys.executable, "-c", "import gambol.game.app.app, gambol.game.hosts.window, gambol.game.render, sys\n"
                            "print('imgui_bundle' in sys.modules)"], cwd=Path(__file__).parents[2],

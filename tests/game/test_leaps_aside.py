@@ -56,7 +56,7 @@ def told(someone, state, aside, far, path=False):
     return states, None, place, script
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("path", [False, True])
 @pytest.mark.parametrize("aside", [40.0, -40.0, -60.0])
 def test_who_has_time_for_a_step_turns_to_the_place_and_leaps_on_along_the_line_to_it(someone, under_way, aside, path):
@@ -112,6 +112,7 @@ def tapped(someone, aside, back=None, speed=1.3):
     raise AssertionError("he did not leap")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed", [1.3, 2.5])
 @pytest.mark.parametrize("aside", [40.0, -60.0, 90.0])
 def test_hands_that_throw_the_stick_aside_as_they_tap_leap_where_it_points(someone, aside, speed):
@@ -135,6 +136,7 @@ def at_a_run(someone, speed):
     return state
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed, aside, far", [(1.3, -60.0, 2.0), (2.8, 60.0, 2.5)])
 def test_no_step_of_who_thinks_of_a_leap_aside_has_more_to_work_out_than_a_few_paths_or_a_plan_and_it_is_the_same_again(someone, monkeypatch, speed, aside, far):
     """It was found out at once, in a quarter to one and a half seconds: a live theatre stood still. Nor does it matter what is known already of a leap that was thought of before."""
@@ -168,6 +170,7 @@ def test_who_walks_slowly_to_a_place_aside_goes_faster_and_leaps_on_one_foot(som
         assert made is not None and made.path.lands is not None, script.refused
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed, aside, far", [(3.0, 0.0, 1.3), (1.3, 180.0, 1.3), (2.5, 150.0, 1.3)])
 def test_who_is_told_of_a_place_that_he_runs_past_or_that_lies_behind_turns_back_and_leaps_there(someone, speed, aside, far):
     """He was refused, and ran on."""

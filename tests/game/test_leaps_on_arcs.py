@@ -59,7 +59,7 @@ def test_the_ring_stays_ahead_of_who_turns_as_he_waits_and_where_it_was_of_who_d
         assert aim.asked(state, (), 9.81).heading == pytest.approx(state.ground[2] + left, abs=0.1), "he lands as he will run on"
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed, turn", [(1.3, 50.0), (2.2, -50.0), (3.0, 40.0), (3.0, -60.0)])
 def test_who_taps_a_leap_as_he_goes_along_an_arc_leaps_on_one_foot_and_goes_on(speed, turn):
     def wished(moment, seconds, jump):

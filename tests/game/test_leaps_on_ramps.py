@@ -18,6 +18,7 @@ RISE = math.tan(math.radians(15.0))
 RAMP = (Box((0.0, 20.0 * RISE, 0.0), (40.0, 40.0 * RISE, 40.0), slope=RISE),)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed, ground", [(3.0, (0.0, -12.0, 0.0)), (2.2, (0.0, 12.0, math.pi)), (2.2, (-8.0, 0.0, math.pi / 2))])
 def test_who_taps_a_leap_as_he_runs_on_a_ramp_leaps_on_one_foot(speed, ground):
     someone = person()

@@ -47,6 +47,7 @@ def went(moments, seconds):
     return float(np.linalg.norm(place[1] - place[0])) / seconds
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("way, throw", [(90, 1.0), (-90, 1.0), (180, 1.0), (0, 0.5)])
 def test_who_is_told_to_leap_on_his_way_does_not_stop_for_it(someone, way, throw):
     strafe = way != 0

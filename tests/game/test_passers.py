@@ -28,7 +28,7 @@ def pressed(*actions):
 def test_they_walk_and_nobody_runs_into_anybody(walker):
     line, places = Timeline(opening(walker)), []
     line.advance(pressed("crowd=9"))
-    for _ in range(60 * 6):
+    for _ in range(60 * 4):
         line.advance([Wish()])
         places.append([one.state.ground[:2] for one in line.now.after.characters])
     places = np.array(places)

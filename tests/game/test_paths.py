@@ -16,6 +16,7 @@ from scenarios import written
 FPS = 60
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("points", [
     ((0.0, 2.0), (2.0, 2.0), (2.0, 0.0), (0.0, 0.0)),  # ends where it begins
     ((0.0, 1.0), (0.0, 4.0), (3.0, 4.0), (0.0, 1.0)),  # passes its own end
@@ -48,6 +49,7 @@ moves = [{{ hops = 4, ahead = 0.5 }}, {{ stop = true, for = 0.5 }}]
 """
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("high, up", [(0.15, True), (0.7, False)])
 def test_hops_go_up_a_kerb_and_end_before_a_wall(tmp_path, high, up):
     text = HOPS.format(duration=5, middle=high / 2, high=high)

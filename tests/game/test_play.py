@@ -162,6 +162,7 @@ def test_events_that_mean_nothing_here_are_ignored(game):
     game.do("dance")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("slower", [0, 1, 2])
 def test_the_picture_moves_evenly_at_any_display_rate(game, slower):
     press(game, "W")

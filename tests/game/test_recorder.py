@@ -76,7 +76,8 @@ def test_a_full_disk_is_told_with_the_path_and_leaves_a_playable_part(tmp_path):
     code = f"""
 import sys; sys.path[:0] = {sys.path!r}
 import resource
-from test_recorder import Film, np
+import numpy as np
+from gambol.game.output.recorder import Film
 resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
 noise = np.random.default_rng(0).integers(0, 255, (90, 120, 3), np.uint8)
 with Film({str(tmp_path / "a.mp4")!r}, (120, 90), 10) as film:
@@ -99,13 +100,15 @@ def test_a_film_that_cannot_be_completed_stays_in_its_part(tmp_path):
     assert len(read(tmp_path / "a.part.mp4")[0]) == 1
 
 
+@pytest.mark.thorough
 def test_a_killed_recording_can_be_played(tmp_path):
     code = f"""
 import sys; sys.path[:0] = {sys.path!r}
-from test_recorder import Film, picture
+import numpy as np
+from gambol.game.output.recorder import Film
 with Film({str(tmp_path / "a.mp4")!r}, (64, 48), 30) as film:
     for i in range(150):
-        film.write(picture(i % 30))
+        film.write(np.full((48, 64, 4), 8 * (i % 30), np.uint8))
     print("ready", flush=True)
     sys.stdin.read()
 """

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from gambol.game.hosts.events import MouseMove
-from gambol.game.session.tick import KEPT
+from gambol.game.session import tick
+from gambol.game.world import RATE
 from hands import FRAME, at, camera, game, press, release, tap, text, wait, walked  # noqa: F401, the fixture
 
 
@@ -95,8 +96,10 @@ def test_a_past_moment_is_looked_at_from_anywhere_and_nothing_of_it_is_kept(game
     assert "this is the past" in text(game)
 
 
-def test_half_a_minute_is_kept(game):
-    wait(game, KEPT * FRAME + 5)
+def test_half_a_minute_is_kept_and_nobody_goes_back_farther_than_is_kept(game, monkeypatch):
+    assert tick.KEPT == 30 * RATE
+    monkeypatch.setattr(tick, "KEPT", 150)
+    wait(game, 150 * FRAME + 1)
     press(game, "BACKSPACE")
-    wait(game, KEPT * FRAME + 2)
-    assert game.moment.number == game.now.number - KEPT
+    wait(game, 150 * FRAME + 1)
+    assert game.moment.number == game.now.number - 150

@@ -59,6 +59,7 @@ def deepest(who, states, things):
     return max(float(-gap(positions[:, at].reshape(-1, 3), thing).min()) for thing in things)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("agility, pace, far", [(0.5, 1.3, 2.2), (1.0, 3.2, 3.6), (2.0, 3.0, 1.9)])
 def test_nobody_runs_into_what_is_too_high_to_leap(library, agility, pace, far):
     who, things = person(library.tuned(Settings(idle=0.0, agility=agility))), (box(far, 1.5),)
@@ -68,6 +69,7 @@ def test_nobody_runs_into_what_is_too_high_to_leap(library, agility, pace, far):
     assert len(script.refused) == 1 and "too" in script.refused[0]
 
 
+@pytest.mark.thorough
 def test_nobody_runs_over_the_edge_of_a_gap_that_is_too_wide(library):
     who, things = person(library.tuned(Settings(idle=0.0))), (box(-3.0, 1.0, 6.0), box(7.0, 1.0))
     states, script = run_up(who, things, 2.8, (0.0, 1.0, 7.4), floor=1.0)
@@ -88,7 +90,7 @@ def landed(states):
     return next(n for n, s in enumerate(states) if s.active == "locomotion" and any(now.active == "jump" for now in states[:n]))
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("far, askew", [(9.0, 0.5), (9.3, 0.0), (9.6, 0.5), (9.9, 0.0)])
 def test_who_has_just_landed_from_a_run_stops_before_what_he_can_not_leap_from_there(library, far, askew):
     """He went on with his leap in mind, and through its edge."""
@@ -99,6 +101,7 @@ def test_who_has_just_landed_from_a_run_stops_before_what_he_can_not_leap_from_t
     assert script.now.run_up.halt is not None
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pace", [1.2, 3.4])
 def test_nobody_leaps_back_to_what_his_run_up_has_gone_past(library, pace):
     """Who was braked before a wall asked for his leap wherever it led."""
@@ -147,6 +150,7 @@ def test_who_has_come_to_rest_there_stays():
     assert not intent.velocity.any() and intent.halt is None
 
 
+@pytest.mark.thorough
 def test_hands_that_walk_at_a_platform_leap_onto_it_and_at_a_wall_stop(library):
     who, ends, told = person(library.tuned(Settings(idle=0.0))), [], []
     for high in (0.35, 1.5):
@@ -174,7 +178,7 @@ def running(who, things, floor, far, held=True):
     return states
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("things, floor, far", [((box(-3.0, 1.0, 8.0), box(6.1, 1.0)), 1.0, 5.0), ((box(5.3, 0.35, 8.0),), 0.0, 5.3), ((box(5.6, 0.4, 0.15),), 0.0, 5.6),
                                                 ((box(5.3, 0.25, 8.0),), 0.0, 5.3)])
 def test_a_leap_held_at_a_run_goes_off_at_the_last_footfall_and_he_runs_on(library, things, floor, far):
@@ -214,6 +218,7 @@ def test_a_leap_held_at_a_run_over_a_gap_too_wide_for_it_is_braked(library):
     assert all(s.active == "locomotion" or s.velocity[0] < 0.3 for s in states) and states[-1].floor == 1.0 and states[-1].ground[1] < 5.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("agility", [0.5, 1.0])
 def test_nobody_whose_hands_run_at_an_edge_goes_over_it(library, agility):
     who = person(library.tuned(Settings(idle=0.0, agility=agility)))
@@ -272,7 +277,7 @@ def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=420):
     return states, known
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("things, floor, far", [((box(5.0, 0.33),), 0.0, 5.0), ((box(-3.0, 1.0, 8.0), box(7.0, 1.0)), 1.0, 5.0), ((box(5.0, 1.8),), 0.0, 5.0)])
 @pytest.mark.parametrize("run", [0.0, 0.9])
 def test_hands_that_go_straight_at_what_is_ahead_come_to_rest_before_it_and_are_not_led_aside(library, things, floor, far, run):
@@ -289,17 +294,18 @@ def test_hands_that_go_at_a_wall_askew_or_at_a_pillar_are_led_on(library):
         assert np.hypot(*states[-1].ground[:2]) > on and all(one.halt is None for one in known)
 
 
-def test_the_key_pressed_late_by_who_brakes_before_a_box_takes_him_straight_up_onto_it(library):
+@pytest.mark.few(1)
+@pytest.mark.parametrize("ahead", [0.75, 0.9])
+def test_the_key_pressed_late_by_who_brakes_before_a_box_takes_him_straight_up_onto_it(library, ahead):
     """He was led aside along it and leapt askew, and fell off its side; and who let go of braking while he thought of his leap came to stand in it."""
     who = person(library.tuned(Settings(idle=0.0)))
-    for ahead in (0.75, 0.9):
-        states, known = pressed(who, (box(6.8, 0.33, 8.0),), 6.8, ahead, steps=330)
-        thinks = [one for one in known if one.thought is not None]
-        leapt = [s for s in states if s.active == "jump"]
-        assert thinks and all(one.halt is not None for one in thinks), "he brakes on as he thinks"
-        assert deepest(who, states, (box(6.8, 0.33, 8.0),)) < 0.02
-        assert leapt and not any(isinstance(s.memory.memory, Jumping) and s.memory.memory.fault for s in leapt)
-        assert max(abs(float(s.ground[2])) for s in states) < 0.1
+    states, known = pressed(who, (box(6.8, 0.33, 8.0),), 6.8, ahead, steps=330)
+    thinks = [one for one in known if one.thought is not None]
+    leapt = [s for s in states if s.active == "jump"]
+    assert thinks and all(one.halt is not None for one in thinks), "he brakes on as he thinks"
+    assert deepest(who, states, (box(6.8, 0.33, 8.0),)) < 0.02
+    assert leapt and not any(isinstance(s.memory.memory, Jumping) and s.memory.memory.fault for s in leapt)
+    assert max(abs(float(s.ground[2])) for s in states) < 0.1
 
 
 def test_a_run_up_to_what_can_not_be_leapt_is_given_up_and_told_why(library):

@@ -184,6 +184,7 @@ def test_the_same_scenario_twice_is_the_same_to_the_bit(scenario):
             assert np.array_equal(x.state.pose.rotations, y.state.pose.rotations)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("fps", [1, 24, Fraction(30000, 1001), 30, 50, 120])
 def test_another_frame_rate_films_the_same_motion(scenario, fps):
     reference = {round(f.time * 60): f.before for f in frames(scenario)}

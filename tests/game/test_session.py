@@ -75,6 +75,7 @@ def test_pause_holds_the_world_but_not_the_camera_and_a_step_is_one_step():
     assert timeline.now.after.number == world.number + 2
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("slow", SLOWER)
 def test_slow_motion_shows_the_same_way_later_and_evenly(slow):
     timeline = played(*[AHEAD] * 30)

@@ -84,6 +84,7 @@ def test_who_leaps_is_left_alone():
     assert stopped(standing(1.4), leap, (WALL,)) is leap
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("moves, gets, high, floor", [
     ("{ walk_to = [0.2, 6], for = 6 }", (0.0, 1.7), 0.6, 0.0),
     ("{ walk_to = [0, 2.5], jump_to = [0, 2.0], speed = 1.4, for = 5 }, { for = 1, stop = true }", (1.7, 2.9), 0.4, 0.4),

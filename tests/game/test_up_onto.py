@@ -51,6 +51,7 @@ def leaps(states):
     return next(k for k, state in enumerate(states) if isinstance(getattr(state.memory, "memory", None), Jumping))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("high", [0.3, 0.42, 0.53])
 def test_who_has_walked_up_to_a_box_leaps_onto_it_from_where_he_rests(somebody, high):
     """He took a step back first, and was on top of it a second later for that."""
@@ -61,6 +62,7 @@ def test_who_has_walked_up_to_a_box_leaps_onto_it_from_where_he_rests(somebody, 
     assert states[-1].floor == pytest.approx(high, abs=0.01) and deepest(somebody, states, thing) < 0.03
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("high", "far"), [(0.3, 0.2), (0.42, 0.25), (0.53, 0.3)])
 def test_who_stands_too_near_to_a_box_goes_back_and_leaps_onto_it(somebody, high, far):
     thing = box(high, far)
@@ -71,6 +73,7 @@ def test_who_stands_too_near_to_a_box_goes_back_and_leaps_onto_it(somebody, high
     assert held and np.ptp(np.array(held), axis=0).max() < 0.02, "the ring stays where hands left it as he goes back"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("far", "askew"), [(0.45, 0.0), (0.6, 0.0), (0.4, 0.5)])
 def test_who_stands_near_a_box_and_taps_with_the_stick_at_it_leaps_onto_it(somebody, far, askew):
     """His ring lay 0.15 m before him, and he hopped against the box."""
@@ -81,6 +84,7 @@ def test_who_stands_near_a_box_and_taps_with_the_stick_at_it_leaps_onto_it(someb
     assert away[-1].floor == 0.0, "who holds no stick leaps where he stands"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("near", [0.35, 0.65, 0.8, 1.1])
 def test_who_walks_at_a_box_and_taps_is_soon_on_it(somebody, near):
     """Wherever he taps: who was slow enough to aim from a stand first came to a stop, and 2.5 s went by."""
@@ -176,6 +180,7 @@ def test_who_stops_before_a_box_as_he_waits_leaps_onto_it_from_where_he_rests(so
     assert any(aim.moving and aim.waiting > 0.0 for aim in aims) and any(aim.stands and aim.waiting > 0.0 for aim in aims)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("high", "far"), [(0.5, 0.5), (0.57, 0.5), (0.57, 0.62)])
 def test_a_ring_pushed_over_a_high_box_stops_where_legs_still_clear_its_edge(somebody, high, far):
     """From near by legs would come against the edge of who leaps far over it."""

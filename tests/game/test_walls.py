@@ -58,7 +58,7 @@ def least(frames, things):
     return min(float(gap(at, thing).min()) for thing in things)
 
 
-@pytest.mark.few(8)
+@pytest.mark.few(5)
 @pytest.mark.parametrize("heeds", [True, False])
 @pytest.mark.parametrize("seed", range(12))
 def test_nobody_comes_nearer_than_a_body_is_thick(seed, heeds):
@@ -70,6 +70,7 @@ def test_nobody_comes_nearer_than_a_body_is_thick(seed, heeds):
         assert np.linalg.norm(np.diff(frames[:, :2], axis=0), axis=-1).max() < 4.5 / 60  # nobody is put elsewhere
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height", [1.2, 2.1])
 @pytest.mark.parametrize("speed", [1.4, 3.5])
 def test_nor_do_small_and_large_bodies(height, speed):
@@ -78,6 +79,7 @@ def test_nor_do_small_and_large_bodies(height, speed):
         assert least(walked(somebody(height), velocity, things, True, seconds=4.0), things) > NEAR * min(height / 1.75, 1.0) - SLACK
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed", [0.7, 1.4, 2.5, 3.5])
 def test_who_goes_straight_at_a_wall_stops_before_it_and_brakes_as_people_do(speed):
     wall = (Box((0.0, 1.2, 6.0), (9.0, 2.4, 0.1)),)
@@ -87,6 +89,7 @@ def test_who_goes_straight_at_a_wall_stops_before_it_and_brakes_as_people_do(spe
     assert np.gradient(pace).min() * 60 > -6.5  # as hard as the last resort brakes
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed", [1.0, 3.0])
 def test_who_comes_to_a_wall_at_a_small_angle_goes_on_along_it(speed):
     wall = (Box((0.9, 1.2, 10.0), (0.2, 2.4, 40.0)),)

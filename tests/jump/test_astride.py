@@ -51,6 +51,7 @@ def deepest(jump, states):
     return float((thick - away).max())
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", HEADINGS)
 def test_it_crouches_and_stands_up_over_feet_that_stay(person, jump, stands, name):
     state = stands(name)
@@ -66,6 +67,7 @@ def test_it_crouches_and_stands_up_over_feet_that_stay(person, jump, stands, nam
     assert np.linalg.norm(pulls, axis=-1).max() < 40.0, "knees go on as they were turned"
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("name", "place"), [("its left foot up", (1.1, 0.0, 0.7)), ("its left foot up", (0.3, STEP, 1.6)), ("its right foot up", (-1.1, 0.0, 0.7)),
                                               ("its right foot up", (-0.43, STEP, 1.27))])
 @pytest.mark.parametrize("aims", [0, 50])

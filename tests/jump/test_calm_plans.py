@@ -21,7 +21,7 @@ def fastest(jump, made, *parts):
     return float(np.linalg.norm(np.diff(places[:, [jump.skeleton.index(part) for part in parts]], axis=0), axis=-1).max() * 120)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("aside", [0, 30, 60, 120, 180])
 def test_a_standing_leap_a_little_farther_moves_hardly_otherwise(jump, standing, aside):
     way, found = np.radians(aside), []

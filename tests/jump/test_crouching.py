@@ -148,6 +148,7 @@ def test_who_crouches_beside_a_box_draws_his_arms_in(person):
     assert gap(placed.reshape(-1, 3), box).min() > 0.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("high", "heading"), [(0.45, 0.0), (0.45, 0.5), (0.6, 0.0), (0.9, 0.5)])
 def test_it_crouches_no_deeper_than_a_box_before_it_leaves_room_for(jump, person, high, heading):
     """Who has walked up to a box and aims at its top bends no knee into it; and leaps onto it if that can be."""

@@ -68,6 +68,7 @@ def test_feet_stand_still_and_clear_the_floor_and_each_other(leapt, person):
         assert not len(stood) or np.ptp(stood, axis=0)[[0, 2]].max() < 0.02
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("way", "most"), [((-0.4, 0.4), 0.45), ((-0.4, -0.4), 0.45), ((-0.8, 0.0), 0.45), ((0.55, 0.55), 0.5), ((0.8, 0.0), 0.5)])
 def test_nobody_waits_long_for_a_foot_that_carries_him_on(person, way, most):
     wish, state = np.array([way[0], 0.0, way[1]]), person.start()
@@ -125,6 +126,7 @@ def test_a_hair_more_of_stick_makes_no_other_leap(person):
     assert np.abs(np.diff(risen)).max() < 0.055, risen
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("speed", [0.25, 1.3, 1.6])
 def test_who_creeps_and_who_walks_briskly_keeps_his_speed(person, speed):
     """Off a foot that is under him: a walker's that has just struck brakes him for half a second, to 70 % of it."""

@@ -28,6 +28,7 @@ def fastest(who, made, part):
     return float(np.linalg.norm(log(np.swapaxes(local[:-1], -1, -2) @ local[1:]), axis=-1).max() * 60)
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("place, airtime", [(place, None) for place in ROUND] + [(place, 0.5) for place in HIGH])
 def test_knees_and_ankles_turn_no_faster_than_peoples(jump, standing, place, airtime):
     made = jump.plan(standing, Intent(leap=Leap(np.array(place) + np.array([standing.ground[0], standing.floor, standing.ground[1]]), airtime)))

@@ -146,6 +146,7 @@ def test_a_body_that_can_t_jump_at_all_is_told_so_wherever_it_is_asked_to(standi
         assert jump.plan(standing, Intent(leap=Leap(None, 0.25))).path.airtime == pytest.approx(0.25)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("deep", [5.0, 50.0])
 def test_who_is_asked_too_deep_is_told_how_deep_he_can_get_there(jump, standing, deep):
     """Right above the place, however deep that is; a little deeper is refused."""

@@ -29,6 +29,7 @@ def courses(monkeypatch):
     return found
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("ahead", "high", "far", "most"), [(0.7, 0.5, 1.6, 100), (0.9, 0.5, 2.0, 130), (0.6, 0.3, 2.4, 90)])
 def test_who_stands_before_a_hurdle_is_refused_by_few_courses(jump, standing, courses, ahead, high, far, most):
     place = np.array([standing.ground[0], 0.0, standing.ground[1] + far])
@@ -94,7 +95,7 @@ def test_the_nearest_place_to_one_that_can_be_leapt_to_is_that_one(locomotion, j
     for k in range(100):
         before = state
         state, _ = locomotion.step(state, wish, 1 / 60)
-        if k > 60 and k % 8 == 0:
+        if k > 60 and k % 16 == 0:
             moving = replace(state, previous=before.pose, elapsed=1 / 60)
             start = jump.start_of(moving)
             for far in (0.3, 0.6, 1.0, 1.5):

@@ -65,6 +65,7 @@ def someone():
     return Supervisor({"locomotion": Locomotion.load(), "jump": Jump()})
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("place, things", [((0.0, 0.0, 5.0), ()), ((0.0, 0.0, 1.4), (HIGH,)), ((0.0, 0.0, 1.3), (LOW,))], ids=["far", "refused", "leapt"])
 @pytest.mark.parametrize("crouches", [False, True])
 def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someone, monkeypatch, place, things, crouches):
@@ -94,6 +95,7 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
         assert again.refused == then.refused and np.array_equal(again.pose.rotations, then.pose.rotations)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("crouches", [False, True])
 @pytest.mark.parametrize("speed", [1e-4, 0.1, 0.5])
 def test_a_place_that_moves_is_leapt_to_where_it_is_then(someone, monkeypatch, speed, crouches):
@@ -121,6 +123,7 @@ def test_who_is_refused_a_place_that_moves_is_told_why_all_along(someone):
     assert all(why.startswith("too far") for why in told[20:])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed, far", [(0.7, 0.45), (0.9, 0.6)])
 def test_a_heading_that_turns_a_little_is_no_other_wish(someone, monkeypatch, speed, far):
     """Whose course turned as he slowed down was asked all anew in every step, seventeen plans: a game stood still for seconds."""

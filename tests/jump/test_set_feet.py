@@ -45,6 +45,7 @@ def leapt(person, state, leap, velocity=(0.0, 0.0, 0.0)):
     return told[:-1], len(told) / FPS, states
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("far", [None, 0.9])
 @pytest.mark.parametrize(("velocity", "seconds"), MIDST)
 def test_legs_stay_apart_in_a_leap_out_of_a_turn_or_a_step_aside(person, velocity, seconds, far):
@@ -93,6 +94,7 @@ def test_who_stands_still_has_set_his_feet_however_they_stand(person):
     assert not sets_feet(Physique(), replace(state, velocity=np.zeros(3)))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("speed", "past"), [(0.8, 1.20), (0.8, 1.26), (2.4, 1.38)])
 def test_nobody_pushes_off_the_air_beyond_an_edge(person, speed, past):
     """Who is about to step off a low platform leaps once feet that push stand on one floor: a foot beyond the edge was lifted by 9 cm in a step."""

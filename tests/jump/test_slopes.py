@@ -90,6 +90,7 @@ def test_slopes_are_how_the_ground_rises(heading, slope, place):
     assert not slope_at(x, z, things, -5.0).any() and not slope_at(50.0, 0.0, things).any()
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("degrees", [6.0, 15.0])
 @pytest.mark.parametrize("facing", [0.0, np.pi, 0.5 * np.pi, 0.8])
 @pytest.mark.parametrize("way", [None, (0.7, 0.0), (0.5, 0.5 * np.pi), (0.4, np.pi)], ids=["up", "ahead", "aside", "back"])

@@ -200,6 +200,7 @@ def leapt(person, pace, late, stays=False):
     return made, (np.array(way)[6:] - np.array(way)[:-6])[down + 3:down + 40] * FPS / 6, np.array(knees)[down:down + 12], (np.linalg.norm(hands, axis=-1).max(), np.abs(knee).max())
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("late", [0, 9, 19, 28, 38, 47])
 def test_who_walks_on_lands_on_one_foot_and_does_not_come_to_rest(person, late):
     """On two he stood still after every leap, 0.01 of his speed left, and squatted to 96°."""
@@ -208,12 +209,14 @@ def test_who_walks_on_lands_on_one_foot_and_does_not_come_to_rest(person, late):
     assert np.degrees(knees[:, made.path.lands].max()) < 90.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("late", [0, 19, 38])
 def test_who_wants_to_stay_there_lands_on_both(person, late):
     made, pace, *_ = leapt(person, 1.3, late, stays=True)
     assert made.path.lands is None and pace.min() < 0.2
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pace", [2.4, 3.0])
 def test_a_runner_rises_as_who_leaps_and_lands_on_a_leg_that_bends_as_recorded(person, pace):
     """He rose 6 cm, as in a long step; recorded ones rise 21 to 39, athletes' all."""
@@ -222,6 +225,7 @@ def test_a_runner_rises_as_who_leaps_and_lands_on_a_leg_that_bends_as_recorded(p
     assert np.median([np.degrees(knees[:, made.path.lands].max()) for made, _, knees, _ in found]) < 91.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pace", [1.3, 3.0])
 def test_hands_and_the_leg_that_swings_on_come_down_as_softly_as_recorded(person, pace):
     """Hands were pulled by up to 230 m/s² and the knee by 450 rad/s², as fast as the other leg gave: recorded ones by 56 to 100 and 113 to 227."""

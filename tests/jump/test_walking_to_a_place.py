@@ -38,6 +38,7 @@ def leapt(person, speed, far, around=(), floor=0.0):
     return made, place, float((roots[6:, 2] - roots[:-6, 2]).min()) * FPS / 6 / speed, float(before[1] - roots[:, 1].min())
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("speed", [1.15, 1.3, 1.6])
 @pytest.mark.parametrize("far", [2.2, 2.4, 2.6])
 def test_he_pushes_off_the_foot_under_him_and_is_not_braked(person, speed, far):
@@ -79,7 +80,7 @@ def told(person, speed, up, beyond=0.35):
     return state.memory.memory, things
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("speed", [1.2, 1.6])
 @pytest.mark.parametrize("up", [0.2, 0.35, -0.2, -0.35])
 def test_onto_a_step_and_off_one_he_leaps_as_on_the_level(person, speed, up):

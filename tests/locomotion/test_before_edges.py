@@ -29,6 +29,7 @@ def gone(locomotion, speed, rooms, lets_go=True):
     return -state.ground[:, 1], -np.diff(speeds, axis=0).min(0) * FPS
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("speed", (0.6, 1.3, 2.5, 3.2))
 def test_who_lets_go_in_time_stays(locomotion, speed):
     """However little room it takes: from where he can just stop, hard, to where he need not brake for it."""

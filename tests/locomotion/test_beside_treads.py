@@ -26,29 +26,26 @@ def box(x, z, wide, high, deep):
 THINGS = {"stairs": tuple(box(0.0, 0.29 * k, 2.0, 0.17 * (k + 1), 0.29) for k in range(6)), "a kerb": (box(0.0, 0.6, 1.2, 0.12, 1.0),), "a low box": (box(0.0, 0.6, 1.4, 0.3, 1.2),)}
 
 
-@pytest.fixture(scope="module")
-def deepest(locomotion):
-    """For each of THINGS how deep (T, N) [m] anything is in it of those who were not put into it, until they step off its side."""
-    physique, found = Physique(), {}
-    for name, things in THINGS.items():
-        rng = np.random.default_rng(0)
-        ground = np.stack([rng.uniform(-1.0, 1.0, COUNT), rng.uniform(-0.8, 1.4, COUNT), rng.uniform(-np.pi, np.pi, COUNT)], -1)
-        state, depths = locomotion.start(ground, np.array([floor_at(x, z, things, 9.0) for x, z, _ in ground])), []
-        fallen = np.zeros(COUNT, bool)
-        for k in range(10 * CHANGES):
-            if k % CHANGES == 0:
-                wish = np.stack([rng.uniform(0.2, 0.8, COUNT), rng.uniform(-2.5, 2.5, COUNT), rng.choice([0.0, 0.0, 0.3, -0.3], COUNT)], -1) * rng.choice([1.0, 1.0, 1.0, 0.0], (COUNT, 1))
-            state, pose = locomotion.step(state, Intent(wish, around=things), 1 / FPS)
-            places, thick = flesh(physique, *forward_kinematics(locomotion.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
-            fallen |= [floor_at(x, z, things, 9.0) < floor - FALLS for (x, z, _), floor in zip(state.ground, state.floor)]
-            deep = (thick - np.min([gap(places.reshape(-1, 3), thing).reshape(places.shape[:2]) for thing in things], 0)).max(1)
-            depths.append(np.where(fallen, 0.0, deep))
-        depths = np.array(depths)
-        found[name] = depths[:, depths[0] < 0.5 * DEEP]
-    return found
+def deepest(locomotion, things):
+    """How deep (T, N) [m] anything is in things of those who were not put into them, until they step off their side."""
+    physique, rng = Physique(), np.random.default_rng(0)
+    ground = np.stack([rng.uniform(-1.0, 1.0, COUNT), rng.uniform(-0.8, 1.4, COUNT), rng.uniform(-np.pi, np.pi, COUNT)], -1)
+    state, depths = locomotion.start(ground, np.array([floor_at(x, z, things, 9.0) for x, z, _ in ground])), []
+    fallen = np.zeros(COUNT, bool)
+    for k in range(10 * CHANGES):
+        if k % CHANGES == 0:
+            wish = np.stack([rng.uniform(0.2, 0.8, COUNT), rng.uniform(-2.5, 2.5, COUNT), rng.choice([0.0, 0.0, 0.3, -0.3], COUNT)], -1) * rng.choice([1.0, 1.0, 1.0, 0.0], (COUNT, 1))
+        state, pose = locomotion.step(state, Intent(wish, around=things), 1 / FPS)
+        places, thick = flesh(physique, *forward_kinematics(locomotion.skeleton, np.asarray(pose.root, float), np.asarray(pose.rotations, float)))
+        fallen |= [floor_at(x, z, things, 9.0) < floor - FALLS for (x, z, _), floor in zip(state.ground, state.floor)]
+        deep = (thick - np.min([gap(places.reshape(-1, 3), thing).reshape(places.shape[:2]) for thing in things], 0)).max(1)
+        depths.append(np.where(fallen, 0.0, deep))
+    depths = np.array(depths)
+    return depths[:, depths[0] < 0.5 * DEEP]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name, share", (("stairs", 0.0085), ("a kerb", 0.005), ("a low box", 0.010)))
-def test_legs_keep_out_of_it(deepest, name, share):
+def test_legs_keep_out_of_it(locomotion, name, share):
     """Feet choose their places anew as they come to point otherwise, half a shoe clear of risers beside them."""
-    assert np.mean(deepest[name] > DEEP) < share
+    assert np.mean(deepest(locomotion, THINGS[name]) > DEEP) < share

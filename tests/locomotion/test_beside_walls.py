@@ -107,6 +107,7 @@ def test_what_hangs_overhead_pushes_no_foot():
     assert np.array_equal(pushed(body(), (box((0.8, 1.5, 0.0), (1.0, 1.0, 1.0)),), line), line)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("thing", (box((0.0, 0.3, 2.0), (2.0, 0.6, 2.0)), SimpleNamespace(foot=(0.0, 0.0, 1.3), radius=0.3, height=2.0)), ids=("a box", "a pillar"))
 def test_who_turns_and_steps_close_by_keeps_his_feet_out_of_it(locomotion, thing):
     """Restless hands that press a body against it: no heel, ball or tip is in it, and nobody climbs what is too high for a step."""
@@ -159,6 +160,7 @@ WALLS = {"a wall": (box((0.0, 1.0, 1.25), (6.0, 2.0, 0.5)), 0.0), "its corner": 
          "a pillar": (SimpleNamespace(foot=(0.0, 0.0, 1.3), radius=0.3, height=2.0), 0.02)}
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("speed", (0.7, 1.3, 2.8))
 @pytest.mark.parametrize("name", WALLS)
 def test_who_walks_on_at_a_wall_comes_to_rest_before_it(locomotion, name, speed):

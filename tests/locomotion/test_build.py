@@ -37,6 +37,7 @@ def cycles_of(clip, family):
     return [c for c in cut(track(clip), family) if c.start > 2.5]
 
 
+@pytest.mark.few(6)
 @pytest.mark.parametrize("name", [*WALKS, *RUNS])
 def test_a_played_gait_is_cut_into_its_own_cycles(recorded, name):
     """Velocity and period come back, told from the poses alone; the ends of a cycle meet."""

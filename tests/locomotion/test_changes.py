@@ -139,6 +139,7 @@ def test_agility_is_how_soon_and_how_hard(library):
     assert times[0] > times[1] > times[2]
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("speed", (0.1, 0.3, 1.0, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.2, 2.6, 3.5, 4.3))
 def test_every_speed_is_met(locomotion, speed):
     """Between the fastest walk and the slowest run, too, where nothing was recorded."""
@@ -146,6 +147,7 @@ def test_every_speed_is_met(locomotion, speed):
     assert mean_velocity(motion.ground[240:])[0, 0] == pytest.approx(speed, abs=0.02)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rates", ((30, 144), (60, 240)), ids=str)
 def test_a_script_ends_where_it_ends_at_any_rate(locomotion, rates):
     ends = []
@@ -208,6 +210,7 @@ def test_an_offset_is_gone_when_its_foot_lands(locomotion):
         assert offset[frame + 2 * FPS:, n].max() < 0.06
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("after", ((0, 0, 0.45), (0, 0, -0.45), (0.6, 0, 0.35), (0, 1.5, 0)), ids=str)
 def test_legs_do_not_cross_through_each_other(locomotion, after):
     from gambol.controllers.body.contact import feet_apart
@@ -238,6 +241,7 @@ def test_no_foot_falls_onto_a_height_over_the_floor_as_a_run_becomes_a_walk(loco
     assert max(worst) < 115.0 and np.median(worst) < 80.0
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("before, after", [(2.5, 1.3), (2.5, 0.0), (3.0, 1.3)])
 def test_no_runner_sinks_as_he_begins_to_walk(locomotion, before, after):
     """His hips go down as a foot of his run comes to bear, and a walk's up: carried on, they went down by 8 cm more than in any stride, into a lunge."""
@@ -247,6 +251,7 @@ def test_no_runner_sinks_as_he_begins_to_walk(locomotion, before, after):
         assert hips[frame:frame + 2 * FPS, n].min() > hips[frame - FPS:frame, n].min() - 0.04
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("before", [2.5, 3.0, 3.5])
 def test_feet_of_a_run_that_becomes_a_walk_come_to_stand_evenly(locomotion, before):
     """Just before a strike they still go at 3.5 m/s; they stood within a frame, and on their heels for a fifth of a second."""
@@ -267,6 +272,7 @@ def test_feet_of_a_run_that_becomes_a_walk_come_to_stand_evenly(locomotion, befo
     assert longest < 8
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("wish", [(0, 0, 0.45), (0, 0, -0.45), (0, 1.5, 0), (-0.6, 0, 0), (0, 0, 0)])
 def test_nobody_goes_on_running_who_does_not_ask_for_it(locomotion, wish):
     """At whatever moment of a run something slow is asked for, it is walked two seconds later."""

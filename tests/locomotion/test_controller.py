@@ -116,6 +116,7 @@ def test_no_wish_makes_a_broken_pose(locomotion, wishes, dt):
     assert np.abs(state.velocity).max() < 0.02, "and it can still stop"
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("wish", ((0, 0, 17.0), (-15.0, 0, 0), (20.0, 0, 0)), ids=str)
 def test_too_much_is_forgotten_as_soon_as_enough(library, wish):
     """Stopping takes no longer after an absurd wish than after one that could be met."""
@@ -240,6 +241,7 @@ def test_motion_is_the_same_from_every_place_and_in_every_direction(library, see
     np.testing.assert_array_equal([s.contacts for s in there.states], [s.contacts for s in here.states])
 
 
+@pytest.mark.thorough
 def test_the_size_of_the_step_does_not_matter(locomotion):
     """From display rate to a thousand a second: the same blend, the same phase, the same place."""
     *ends, finest = [play(locomotion, hold(2.0, *WISHES[::2]).repeat(n, axis=0), dt=1 / (FPS * n)).states[-1].memory for n in (1, 4, 17)]

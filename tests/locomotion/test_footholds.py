@@ -40,6 +40,7 @@ def test_in_a_steady_gait_a_foot_comes_down_where_it_was_planned_as_it_left(loco
     assert np.linalg.norm(planned - stood, axis=-1)[steady].max() < 0.03
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("before", "after"), [((1.3, 0, 0), (0, 0, 0)), ((0.5, 0, 0), (1.4, 0, 0)), ((1.0, 0, 0), (0.6, 1.0, 0))], ids=str)
 def test_a_plan_is_made_anew_with_the_wish(locomotion, before, after):
     """In the very next step; and halfway through its swing a foot is foretold to go where it then does."""
@@ -66,6 +67,7 @@ def test_a_plan_is_made_anew_with_the_wish(locomotion, before, after):
     assert np.median(off) < 0.03 and off.max() < 0.1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("after", ((0, 0, 0.45), (0, -1.5, 0), (0.6, 0, -0.35), (-0.6, 0, 0)), ids=str)
 def test_feet_are_set_down_beside_each_other(locomotion, after):
     """Where both feet stand they are a shoe's width apart, whatever was asked before."""

@@ -81,6 +81,7 @@ def test_who_runs_and_stops_does_not_step_on_the_spot(locomotion):
     assert strikes_at_rest(states).max() == 0
 
 
+@pytest.mark.thorough
 def test_random_scripts_end_where_they_end_at_any_rate(locomotion):
     """Stops and changes of gait among them: a stop told to a tick, or a change, ends them decimetres apart."""
     apart = []

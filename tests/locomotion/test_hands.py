@@ -54,6 +54,7 @@ def test_nobody_is_carried_through_the_air_as_gaits_change(locomotion):
     assert max(longest(~stands[:, n]) for n in range(stands.shape[1])) < FLIGHT * FPS
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("before", [(1.3, 0, 0), (1.3, 1.0, 0), (1.8, 0, 0), (1.8, -1.2, 0)])
 def test_hips_do_not_jerk_as_both_feet_come_to_stand(locomotion, before):
     """The gait stands still from a tick to the next: its movement goes over into what fades."""
@@ -64,7 +65,7 @@ def test_hips_do_not_jerk_as_both_feet_come_to_stand(locomotion, before):
         assert jerk[t - 2:t + 3, n].max() < 0.25
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("before", "then"), [((1.3, 0, 0), None), ((1.8, 0, 0), None), ((2.4, -1.8, 0), None), ((2.4, 1.2, 0), (1.3, 0.5, 0)),
                                               ((1.0, 0, 0), (1.0, 2.4, 0)), ((1.3, 0, 0), (1.3, 2.4, 0))])
 def test_who_stops_ends_over_his_feet(locomotion, before, then):

@@ -8,6 +8,7 @@ from gambol.controllers.locomotion import short_leg
 from playing import FPS, hold, play
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("speed", (0.75, 1.3))
 def test_a_walk_ends_with_one_last_step_beside_the_other_foot(locomotion, speed):
     for seconds in np.linspace(2.0, 3.0, 8):

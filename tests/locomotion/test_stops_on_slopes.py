@@ -35,6 +35,7 @@ def stopped(locomotion, slope, run=3.0):
     return found, state
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("slope", [-0.27, -0.2, 0.2])
 def test_who_lets_go_of_a_run_on_a_slope_stops_there(locomotion, slope):
     """Downhill feet came down after the stop's last strike, and were led to their places in 0.06 s, by up to 20 m/s; soles stayed 5 cm over the slope."""

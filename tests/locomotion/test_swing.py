@@ -57,6 +57,7 @@ def test_swinging_feet_change_neither_speed_nor_acceleration_at_once(locomotion)
     assert np.quantile(off, 0.999) < 0.1, "speeds go as accelerations say [m/s]"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("before", "after"), [((0.6, 0, 0.35), (0.6, 0, -0.35)), ((0.6, 0, -0.35), (0, 1.5, 0)), ((0, 0, 0.45), (0, 0, -0.45))],
                          ids=str)
 def test_feet_pass_each_other_at_a_distance(locomotion, before, after):
@@ -101,7 +102,7 @@ def _on_floor(memory):
 @pytest.mark.parametrize("turning", [2.0, -2.0])
 def test_both_feet_keep_as_far_apart_whichever_way_one_turns(locomotion, turning):
     """The left foot gave way to where the right one had been a step ago: as the blend and the place of a foot part, in a run that turns, that was 3 cm off."""
-    motion = play(locomotion, changing(((2.4, 0, 0), (3.0, -0.4 * turning, 0)), (1.8, turning, 0), 24))
+    motion = play(locomotion, changing(((2.4, 0, 0), (3.0, -0.4 * turning, 0)), (1.8, turning, 0), 12))
     assert feet_apart(locomotion.skeleton, motion.positions, motion.orientations)[2 * FPS:].min() > 0.06
 
 

@@ -81,6 +81,7 @@ def test_who_walks_as_a_recording_begins_made_no_turn_from_rest(locomotion):
         assert not turning_step_build.samples(walk, locomotion.library, turning_step_build.WALKS)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("degrees, soon, beyond", [(90.0, 0.95, 0.6), (-120.0, 1.12, 0.63), (150.0, 1.35, 0.56)])
 def test_who_walks_takes_a_corner_in_a_step_or_two(locomotion, degrees, soon, beyond):
     """At any phase of a walk, no farther beyond the new way than recorded people, and goes on as fast."""

@@ -62,6 +62,7 @@ def walked(locomotion, around, speed, seconds):
     return states, points[..., 1] - ground - 0.02
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", WAYS)
 def test_it_goes_up_along_and_down(locomotion, name):
     """Feet that stand are on the ground, or a heel or toes over an edge; the body is as high over its feet as ever."""
@@ -103,6 +104,7 @@ def test_feet_across_a_slope_lie_on_it(locomotion, degrees):
         assert whole.sum() > 30 and np.median(off) < 4.0
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("degrees", (6, 12, 15))
 @pytest.mark.parametrize("facing", (0.0, 0.8, 0.5 * math.pi, math.pi))
 def test_who_stands_on_a_slope_has_both_heels_down(locomotion, degrees, facing):
@@ -247,6 +249,7 @@ def test_what_comes_about_in_mid_swing_is_passed_over_from_where_the_foot_left(l
             assert np.abs(lifted[1] - lifted[0]).max() < 2e-3
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("wish", "longest"), [((0.0, 0.0, 0.0), 10), ((0.4, 0.0, 0.0), 10), ((1.3, -1.5, 0.0), 10), ((-0.5, 0.0, 0.0), 24)], ids=str)
 def test_who_thinks_better_of_it_half_down_a_ledge_brings_his_other_foot_down_to_the_first(locomotion, wish, longest):
     """Set down again on the ledge behind him, a step higher, it pulled the first off the ground and was thrown up as high as the hips behind its body."""

@@ -225,6 +225,7 @@ REAL = ["woody2/wd2_WalkForwardNormal00.bvh", "woody2/wd2_spiral_walk01.bvh", "c
         "cmu_30fps/69/69_15.bvh", "cmu_bvh/35/35_02.bvh", "cmu/35/35_01.amc", "cmu/16/16_16.amc"]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize("path", REAL)
 def test_real_motion_stands_flat_and_bends_the_right_way(shared, path):
     clip = load(shared / "mocap" / path)

@@ -90,6 +90,7 @@ def test_ways_lead_through_the_door():
     assert np.array_equal(found[1], [0.0, 2.0])
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("degrees", [45, 90, 180])
 def test_two_meet_and_pass(degrees):
     turn = np.radians(degrees)
@@ -97,6 +98,7 @@ def test_two_meet_and_pass(degrees):
     walked(-4.0 * ways, 6.0 * ways, 12.0)
 
 
+@pytest.mark.thorough
 def test_a_crowd_on_a_circle_changes_sides():
     """Everybody's way leads through the middle: the hardest for all."""
     angles = np.arange(12) * 2 * np.pi / 12

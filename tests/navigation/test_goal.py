@@ -16,6 +16,7 @@ def walker():
     return Locomotion.load()
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("goal", [(0.0, 2.5, 0.0), (1.5, 1.0, -1.0), (-1.0, -2.0, 2.0), (0.6, 0.0, 0.0)])
 def test_a_walker_follows_a_plan_to_its_goal(walker, goal):
     made = plan(np.zeros(3), goal, limits=walker.walk.half_spaces(0.9))

@@ -173,15 +173,21 @@ def test_a_walk_leads_over_gaps_that_are_too_wide_from_a_stand(someone):
     assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
 
 
-def test_who_stands_too_near_for_his_run_up_steps_back_for_it(someone):
-    states = going(someone, WIDE, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)))
+@pytest.fixture(scope="module")
+def went_back(someone):
+    """The states of one who stands too near to a wide gap."""
+    return going(someone, WIDE, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)))
+
+
+def test_who_stands_too_near_for_his_run_up_steps_back_for_it(someone, went_back):
+    states = went_back
     off = [state.active for state in states].index("jump")
     assert someone.status(states[-1]).kind == "done" and min(float(state.floor) for state in states) == pytest.approx(0.6)
     assert any(state.going.back for state in states) and min(state.ground[1] for state in states) < 0.4
     assert states[off - 1].velocity[0] > 1.2 and not states[-1].going.barred, "then he leaps from a walk, at once"
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("far, begins", [*((far, begins) for far in (1.2, 1.82, 2.1) for begins in (-1.2, 0.6, 1.17, 1.8)), (1.5, 0.6), (1.95, 1.8)])
 def test_whoever_is_sent_across_leaps_at_the_first_or_second_run_up(someone, far, begins):
     """Where he begins decides which of his steps ends at the edge; 1.17: so far before it as the room on a platform of 2 m lets him."""
@@ -235,6 +241,7 @@ def test_run_ups_begin_on_the_level_from_which_the_leap_goes_off(someone):
             assert (begins is not None) == (room and heading == 0.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("up", [0.2, 0.4])
 def test_run_ups_lead_onto_what_is_higher(someone, up):
     """Too far from a stand, and on."""
@@ -246,13 +253,13 @@ def test_run_ups_lead_onto_what_is_higher(someone, up):
     assert min(float(state.floor) for state in states) == pytest.approx(0.6)
 
 
-def test_who_went_back_for_a_run_up_makes_that_leap(someone):
+def test_who_went_back_for_a_run_up_makes_that_leap(went_back):
     """Another way that had become as short was begun, and the first one again from there, without an end."""
-    states = going(someone, WIDE, (0.0, 1.9, 0.0), 0.6, Goal((0.0, 7.0)))
-    leaps = [named(state.going.crossings[0]) for state in states if state.going is not None and state.going.crossings]
+    leaps = [named(state.going.crossings[0]) for state in went_back if state.going is not None and state.going.crossings]
     assert len(set(leaps)) == 1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("wide", [0.01, 0.06, 0.12, 0.25])
 def test_crevices_are_stepped_over(someone, wide):
     things = (LONG[0], Box((0.0, 0.3, 5.0 + wide), (2.0, 0.6, 5.0)))

@@ -113,6 +113,7 @@ def test_he_side_steps_through_and_planned_anew_in_the_gap_goes_on_so():
     assert np.abs(np.sin(headings)).min() > 0.7 and aside.max() < 0.05
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("wide", [0.485, 0.49, 0.5])
 def test_a_gap_of_less_than_half_a_metre_is_passed_by_who_comes_aslant(wide):
     """Rather than going round a wall of 24 m."""

@@ -45,16 +45,18 @@ def off(state, goal):
     return np.hypot(*(state.ground[:2] - goal.floor)), abs(float(wrap(state.ground[2] - heading)))
 
 
-def test_random_goals_are_reached(walker):
-    rng = np.random.default_rng(5)
-    for _ in range(6):
-        goal = Goal(rng.uniform(-3, 3, 2), rng.uniform(-np.pi, np.pi))
-        last = going(walker, goal)[-1]
-        place, turn = off(last, goal)
-        assert walker.status(last).kind == "done" and place < 0.03 and np.degrees(turn) < 3, (goal, place, turn)
-        assert np.abs(last.velocity).max() < 1e-6, "and he stands"
+@pytest.mark.few(2)
+@pytest.mark.parametrize("seed", range(6))
+def test_random_goals_are_reached(walker, seed):
+    rng = np.random.default_rng(seed)
+    goal = Goal(rng.uniform(-3, 3, 2), rng.uniform(-np.pi, np.pi))
+    last = going(walker, goal)[-1]
+    place, turn = off(last, goal)
+    assert walker.status(last).kind == "done" and place < 0.03 and np.degrees(turn) < 3, (goal, place, turn)
+    assert np.abs(last.velocity).max() < 1e-6, "and he stands"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("place", "turn"), [((-1.5, 2.2), -1.8), ((0.3, 3.0), -2.4), ((1.2, 3.0), -1.8)])
 def test_who_turns_at_his_place_stands_on_it_after_two_more_steps(walker, place, turn):
     """The other foot stood in the way of the last but one, which came down 16 cm aside, so that the body glided 9 cm off and four small steps brought it back."""
@@ -178,6 +180,7 @@ def test_what_is_no_goal_is_refused(wrong, said):
         Goal((0.0, 0.0), None, -1.0)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("pace", [0.001, 1.0])
 def test_what_moves_about_far_away_holds_nobody_up(walker, pace):
     """A goal was thought of anew in each step, and never gone to."""

@@ -20,6 +20,7 @@ angles = st.floats(-np.pi, np.pi)
 speeds = st.floats(0.1, 4.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("thing", [BOX, WALL], ids=["box", "wall"])
 @pytest.mark.parametrize("speed", [1.3, 3.2])
 def test_nobody_walks_or_runs_into_a_box(thing, speed):
@@ -96,6 +97,7 @@ def test_what_matters_to_a_way_is_what_a_shorter_one_could_lead_past():
     assert not matters([], (0, 0), (0, 4), 100.0)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("slope", [-2.5, 1.2, 4.0])
 def test_a_ramp_too_steep_to_walk_on_holds_up(slope):
     """He walked through the inside of it."""

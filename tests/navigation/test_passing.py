@@ -46,6 +46,7 @@ def by_a_wall(locomotion, velocity):
     return [(one, gap(one.reshape(-1, 3), wall).reshape(one.shape[:2])) for one in places]
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("velocity", [(1.3, 0.0, 0.0), (0.0, 2.5, 0.0), (0.0, -2.5, 0.0)])
 def test_arms_keep_out_of_a_wall(locomotion, velocity):
     (_, kept), (_, brushed) = by_a_wall(locomotion, velocity)
@@ -77,6 +78,7 @@ def test_forearms_keep_out_where_an_elbow_is_right_over_a_table(locomotion):
     assert gap(forearms.reshape(-1, 3), table).min() > 0.035
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("velocity, table", [((1.8, 0.0, 0.0), Box((-0.25 - 0.4, 0.55, 0.0), (0.8, 1.1, 40.0))), ((0.7, 0.0, 0.0), Box((0.0, 0.35, 2.4), (4.0, 0.7, 0.8)))])
 def test_hands_keep_out_to_their_finger_tips(locomotion, velocity, table):
     """Past a table and up to one: hands hang bent, not straight on from forearms."""
@@ -115,6 +117,7 @@ def test_no_farther_than_to_the_trunk(locomotion):
         assert np.abs(np.einsum("jik,jil->jkl", pose.rotations, pose.rotations) - np.eye(3)).max() < 1e-5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("velocity, most", [((1.3, 0.0, 0.0), 60.0), ((0.0, 2.5, 0.0), 160.0)])
 def test_no_arm_jumps_where_a_wall_comes_and_goes(locomotion, velocity, most):
     """Wherever arms are as he walks, or turns on the spot."""
@@ -135,7 +138,7 @@ def test_arms_stay_calm_before_a_wall(locomotion):
     lifted = []
     for around in ((Box((0.0, 1.0, 0.37), (8.0, 2.0, 0.2)),), ()):
         state, places = someone.start(), []
-        for _ in range(60 * 50):
+        for _ in range(60 * 25):
             state, pose = someone.step(state, Intent(np.zeros(3), around=around), 1 / 60)
             places.append(arms(locomotion.skeleton, pose))
         places = np.array(places)[60:]

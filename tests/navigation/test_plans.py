@@ -205,6 +205,7 @@ def test_weights_are_written_and_read(tmp_path):
         read_weights(tmp_path / "nowhere.toml")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("weights", [PUBLISHED, HUMAN], ids=["published", "human"])
 @pytest.mark.parametrize("goal", [(0.0, -1.0, 0.0), (-1.5, 1.0, np.pi), (2.0, 1.5, -2.0)])
 def test_ipopt_finds_nothing_better(goal, weights):

@@ -134,6 +134,7 @@ def test_a_straight_way_ends_where_it_comes_too_near_to_what_is_high(size, headi
 APPROACHES = {"the tall end": (0.1, 1.8, math.pi), "the tall end, aslant": (1.3, 1.5, math.pi + 0.6), "its corner": (1.0, 1.2, math.pi)}
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("speed", (0.8, 1.4, 2.8))
 @pytest.mark.parametrize("size", RAMPS)
 @pytest.mark.parametrize("name", APPROACHES)
@@ -145,6 +146,7 @@ def test_nobody_walks_into_its_tall_end(locomotion, size, speed, name):
     assert np.linalg.norm(np.diff([s.ground[:2] for s in states], axis=0), axis=-1).max() < 1.3 * speed / FPS
 
 
+@pytest.mark.few(7)
 @pytest.mark.parametrize("speed", (0.8, 1.4, 2.8))
 @pytest.mark.parametrize("size", RAMPS)
 @pytest.mark.parametrize(("along", "beside", "heading"), ((0.3, 1.6, -0.5 * math.pi), (0.1, 0.9, -0.6), (0.5, 1.2, -2.0)), ids=("at it", "and up", "and down"))
@@ -154,6 +156,7 @@ def test_nobody_walks_into_its_high_side(locomotion, size, speed, along, beside,
     assert deep(locomotion.skeleton, states, thing) < MOST[speed > RUNS]
 
 
+@pytest.mark.few(4)
 @pytest.mark.parametrize(("size", "speed"), (((1.2, 3.0), 0.8), ((1.2, 3.0), 1.4), ((1.0, 1.6), 1.4), ((1.2, 3.0), 2.8), ((1.0, 1.6), 2.8)))
 @pytest.mark.parametrize("heading", (0.0, 2.0))
 def test_who_walks_up_is_not_held(locomotion, size, speed, heading):
@@ -179,6 +182,7 @@ def test_arms_come_in_beside_what_is_high_of_it_only(locomotion):
     assert not drawn(0.0, 1.2, 1.28) and not drawn(0.5, -2.2)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("heading", (0.3, 1.6, -1.0))
 def test_hills_of_many_small_ramps_hold_up_nobody(locomotion, heading):
     """Each is the floor before the next, across the cracks between them, too: a runner keeps his speed."""
@@ -196,6 +200,7 @@ PUSHES = {"its tall end": ((0.1, 2.1, math.pi), -1.0, (0.8, 1.5)), "its high sid
           "its low end": ((0.0, -2.0, 0.0), 1.0, (1.5,)), "it, over its edge": ((0.0, 0.7, 0.0), 1.0, (0.8,))}
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("name", PUSHES)
 def test_who_is_pushed_at_it_stays_out(name):
     """Of it, or on top of it, and gets up there."""

@@ -98,6 +98,7 @@ def test_who_starts_near_a_wall_leaves_it():
     assert plan((0.0, 2.0, 0.0), (0.0, -1.0, 0.0), around=[WALL]).reason == "the walk starts within something"
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("weights", [PUBLISHED, HUMAN], ids=["published", "human"])
 def test_rooms_are_crossed_and_nothing_is_touched(weights):
     rng = np.random.default_rng(4)

@@ -83,6 +83,7 @@ def run(method, performance, points, start=20):
     return played(method, performance, points, start)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_an_easy_motion_is_followed(methods, performance, name):
     """Within 2 cm (5 where poses are not interpolated exactly) for 100 frames on its own output; standing still is a metre off."""
@@ -91,6 +92,7 @@ def test_an_easy_motion_is_followed(methods, performance, name):
     assert off.max() < (0.05 if name in ("nearest", "network", "gplvm") else 0.02), off
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_lost_points_do_no_harm(methods, performance, name):
     """Single ones, then all of them, then wild ones; a third of a second after they are back so is the body."""
@@ -104,6 +106,7 @@ def test_lost_points_do_no_harm(methods, performance, name):
     assert np.linalg.norm(np.diff(found, axis=0), axis=-1).max() < 0.5
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_points_that_no_body_can_have_give_a_body_still(methods, performance, name):
     rng = np.random.default_rng(1)

@@ -25,6 +25,7 @@ from gambol.controllers.supervisor import Duty
 from gambol.game.world.followers import Follows, carried
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("points", [*SETS, "lwrist,rwrist,Head+0/0.09/0.09"])
 def test_a_clip_that_is_in_the_database_is_followed(known, clip, points):
     controller = build(known, points)
@@ -106,6 +107,7 @@ def test_another_number_of_points_ends_it_and_the_body_goes_on(follower, points)
     assert np.isfinite(pose.rotations).all()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("step", [1, 2])
 def test_trackers_that_exchange_their_points_change_nothing(follower, points, step):
     some = points[::step]
@@ -158,7 +160,7 @@ def _placed(states):
                               np.stack([np.asarray(s.pose.rotations, float) for s in states]))
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("frames, which", [*((frames, which) for frames in (6, 30, 50) for which in ([0], [1, 3])), (6, [0, 1, 2, 3]), (30, [0, 1, 2, 3])])
 def test_points_that_were_lost_come_back_without_a_pop(follower, clip, points, which, frames):
     """All of them for as long as the body is still near them: a body that has gone elsewhere meanwhile begins anew."""
@@ -171,6 +173,7 @@ def test_points_that_were_lost_come_back_without_a_pop(follower, clip, points, w
     assert position_error(positions, truth[1:])[90 + frames + 60:].mean() < 0.02
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("wild", [[3.0, 0.0, 0.0], [0.0, -1.0, 0.7]])
 def test_a_wild_point_is_not_followed(follower, clip, points, wild):
     seen, truth = points.copy(), clip.kinematics()[0]
@@ -181,6 +184,7 @@ def test_a_wild_point_is_not_followed(follower, clip, points, wild):
     assert pulls(bodies(SKELETON, states)).max() < 2.5 * pulls(truth).max()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("aside", [(0.0, 0.0, 0.0), (0.9, 0.0, 0.5), (-3.0, 0.0, 2.0)])
 def test_points_that_are_at_odds_with_the_body_begin_it_anew(follower, clip, points, aside):
     """A clip that begins with four frames of a body at the origin, as some do: the fourth frame after them is right."""
@@ -214,6 +218,7 @@ def test_the_same_state_and_points_give_the_same_pose_and_rewinding_replays(foll
         states[0].memory.lost = 1.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rate", [30, 45, 90, 120, 144])
 def test_other_frame_rates_show_the_same_motion(follower, clip, points, rate):
     """Within a frame's way of it: points are seen when they are seen."""
@@ -229,6 +234,7 @@ def test_other_frame_rates_show_the_same_motion(follower, clip, points, rate):
     assert pulls(positions, dt).max() < 8 * pulls(clip.kinematics()[0]).max()
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("step, dt", [(2, DT), (3, DT), (2, DT / 2)])
 def test_points_of_a_slower_rate_than_the_loop_are_followed(follower, clip, points, step, dt):
     """NaN between, or no points at all; in a loop that is faster than frames, whichever step they come in."""
@@ -252,6 +258,7 @@ def test_steps_that_make_no_sense_are_refused(follower, points, dt):
         follower.step(follower.begin(points[0]), Intent(points=points[0]), dt)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height", [1.2, 1.5, 2.0])
 def test_a_body_of_another_size_on_another_floor_does_the_same(known, follower, points, height):
     """For as long as rounding stays small: until points moved by 1e-10 m part from the plain ones too, as neighbours change."""

@@ -79,6 +79,7 @@ def test_two_programs_that_send_the_same_tracker_in_turns_are_told_of_and_one_th
         assert stream.rivals == ("127.0.0.1:8", "127.0.0.1:9")
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("away", [2.0, 4.0, 8.0])
 def test_a_performer_who_was_lost_is_found_again_however_far_and_no_joint_flies(follower, points, away):  # noqa: F811
     wide = Reconstruction(follower.method, follower.controls, starts=follower.starts, far=np.inf)

@@ -214,6 +214,7 @@ def test_points_that_no_body_can_have_give_a_body_still(method, performance, see
     run(method, performance, np.where(rng.random(points.shape) < 0.2, np.nan, points))
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("lost", [[0], [2], [0, 1], [0, 1, 2], [0, 1, 2, 3]], ids=str)
 def test_a_body_goes_on_without_points_and_does_not_run_away(method, performance, lost):
     """Half a second without some, or any; then all are there again."""

@@ -55,6 +55,7 @@ def test_who_stands_exactly_as_asked_tells_it_nearly_all():
     assert all(known.heard == len(POSES) and abs(known.floor) < 0.02 for _, known in found)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_who_stands_about_as_asked_tells_much_more_than_standing_alone(seed):
     (before, after), known = told(seed, 4.0)
@@ -155,6 +156,7 @@ class Wearing:
         return self.places[self.now]
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("first", "ignored", "heard"), [(0, (), 8), (1, (), 8), (0, (3,), 8), (0, tuple(range(1, 8)), 0)])
 def test_one_pose_is_asked_for_after_the_other(first, ignored, heard):
     """One that is ignored is not heard, and whoever ignores all has to move about."""

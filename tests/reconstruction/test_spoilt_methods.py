@@ -82,6 +82,7 @@ class Hopping:
         return (inner, memory[1] + 1), Pose(pose.root + [aside, 0.0, 0.0], pose.rotations)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("every", [1, 2, 60])
 def test_a_method_that_hops_makes_no_body_hop_and_keeps_it_near(follower, clip, points, every):
     hopping = Reconstruction(Hopping(follower.method, 0.4, every), follower.controls, starts=follower.starts)
@@ -107,6 +108,7 @@ def test_leaps_upon_leaps_carry_no_body_away(follower, clip, points):
     assert position_error(positions, clip.kinematics()[0][1:]).max() < 0.6
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("angle", "rate", "high"), [(1.5, 9.0, 0.0), (1.0, 12.0, 0.0), (2.0, 6.0, 0.2)])
 def test_who_dances_is_shown_near_his_own_points(follower, clip, points, angle, rate, high):
     """Who turns about and back, faster than a method's body goes on evenly, makes no leaps: he is shown hardly farther from his points than the method has him."""

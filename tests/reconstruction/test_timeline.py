@@ -43,6 +43,7 @@ def restless(places):
     return float(np.linalg.norm(np.diff(places, 3, axis=0), axis=-1).mean() * 60**3)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("clock", [False, True])
 @pytest.mark.parametrize("rate", [50, 60, 72, 90, 120, 144])
 def test_a_stream_of_any_pace_is_seen_as_calmly_as_its_tracker_moved(rate, clock):
@@ -106,6 +107,7 @@ def test_a_senders_clock_may_be_set(jump):
             assert line.at(time)[0] == pytest.approx(time - 1 / 60, abs=0.02)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", range(6))
 def test_packets_that_are_late_by_as_much_as_they_are_apart_are_never_flown_off_from(seed):
     """Two that seem to be from almost the same moment made a slope without bounds."""
@@ -123,6 +125,7 @@ def test_packets_that_are_late_by_as_much_as_they_are_apart_are_never_flown_off_
     assert 0.03 < off < 0.8
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize("clock", [False, True])
 @pytest.mark.parametrize("rate", [60, 90, 144])
 @pytest.mark.parametrize("hold", [0.08, 0.14, 0.3])
@@ -135,6 +138,7 @@ def test_packets_that_were_held_up_and_come_at_once_are_told_apart(hold, rate, c
     assert np.quantile(off, 0.5 if hold < 0.2 else 0.3) < 0.004
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("rate", [60, 90, 144])
 def test_late_packets_are_not_taken_for_missing_ones(rate, seed):

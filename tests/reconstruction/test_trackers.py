@@ -123,6 +123,7 @@ def test_the_solver_falls_along_its_energy(seed):
         assert abs(-0.5 * slope - fall[d]) <= 2e-4 * max(1.0, abs(fall).max())
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("points", "turning", "bound"), [("6", False, 0.05), ("6", True, 0.04), ("4", False, 0.12), (HEAD_AND_HANDS, True, 0.2)])
 def test_a_walk_is_found_from_nothing(walk, points, turning, bound):
     _, _, positions, orientations = walk
@@ -260,6 +261,7 @@ def test_a_recorded_walk_that_it_never_saw():
     assert away.mean() < 0.03 and away[0] < 0.05
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("points, two, turning", [("6", ("lwrist", "rwrist"), True), ("6", ("lankle", "rankle"), True), ("4", ("rwrist", "lankle"), False)])
 def test_two_trackers_that_come_back_under_each_others_number_are_found_out(points, two, turning):
     """Neither was seen for 0.3 s, as they do on; it is told, and the body is soon as if nothing had been."""
@@ -281,6 +283,7 @@ def test_two_trackers_that_come_back_under_each_others_number_are_found_out(poin
     assert np.mean(off[-20:]) < np.mean(off[30:55]) + 0.02
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("points", ["4", "6"])
 @pytest.mark.parametrize("walk", ["doll", "Gambol's"])
 def test_in_walks_nothing_speaks_for_an_exchange(points, walk):

@@ -26,6 +26,7 @@ def walks():
     return somebody, moments
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize("gained", [0.85, 1.1])
 def test_no_leg_goes_through_the_other_of_who_is_pushed_aside(walks, side, gained):
@@ -74,6 +75,7 @@ def test_nobody_who_is_pushed_aside_has_turned_at_once(walks):
             assert np.linalg.norm(np.diff(joints - joints[:, :1], 2, axis=0), axis=-1).max() / DT**2 < 250.0
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("towards", [180.0, 150.0, 90.0])
 def test_who_walks_on_is_on_his_way_and_his_ground_frame_goes_on_with_him(walks, towards):
     """He who was stopped falls ahead over his feet until he goes again: he stood on his toes' tips, and beyond them, for 0.4 s, and the ground frame leapt by up to 0.28 m."""

@@ -100,6 +100,7 @@ def test_a_stumble_ends_at_rest_and_no_foot_slides(somebody, impulse):
     assert np.allclose(centre_of_mass(BODY.anatomy, *forward_kinematics(BODY.skeleton, made.roots, made.local)), made.centres, atol=1e-5)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("impulse", [(0.0, 170.0), (0.0, -140.0), (150.0, 0.0), (-170.0, 60.0)])
 def test_who_falls_does_not_go_through_the_floor_and_gets_up(somebody, impulse):
     """In no moment is any bone's flesh below the floor; the body lies, and energy does not come from nothing; it stands at last where it lay."""
@@ -117,6 +118,7 @@ def test_who_falls_does_not_go_through_the_floor_and_gets_up(somebody, impulse):
     assert np.hypot(*(centre[-1] - centre[low])[[0, 2]]) < 1.2
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("impulse", [(0.0, 70.0), (0.0, -65.0), (60.0, 0.0), (-120.0, 0.0)])
 def test_who_walks_goes_on_walking(somebody, impulse):
     wish = (1.2, 0.0, 0.0)
@@ -125,6 +127,7 @@ def test_who_walks_goes_on_walking(somebody, impulse):
     assert abs(states[-1].velocity[0] - 1.2) < 0.02 and all(np.isfinite(s.pose.root).all() and np.isfinite(s.pose.rotations).all() for s in states)
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.2, 0.0)), (1.2, (-0.2, 0.1)), (1.2, (0.0, 0.75)), (1.2, (0.0, -0.6)), (1.2, (0.65, 0.0)),
                                                (3.0, (0.4, 0.0)), (3.0, (-0.75, 0.0)), (3.0, (0.0, 1.1)), (3.0, (0.0, -0.55)), (3.0, (0.0, 1.55)),
                                                (3.0, (0.0, -1.35))])
@@ -147,6 +150,7 @@ def test_who_walks_or_runs_takes_a_push_in_stride(somebody, speed, gained):
         assert points[..., 1].min() > 0.015
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.8, 0.0)), (1.2, (0.0, -0.9)), (1.2, (0.0, 0.9)), (3.0, (1.0, 0.0)), (3.0, (0.0, 1.8)), (3.0, (0.0, -1.5))])
 def test_what_is_harder_is_no_longer_taken_in_stride(somebody, speed, gained):
     state = after(somebody, (speed, 0.0, 0.0), 2.0)
@@ -181,6 +185,7 @@ def test_who_is_in_the_air_is_struck_once_he_stands(somebody):
     assert state.memory.memory.made.velocities[0][2] == pytest.approx(50.0 / BODY.mass, abs=0.15)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("way", [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)])
 @pytest.mark.parametrize("wish", [(0.0, 0.0, 0.0), (1.2, 0.0, 0.0)])
 def test_nobody_is_pushed_onto_his_knees(somebody, way, wish):
@@ -221,6 +226,7 @@ def test_who_stumbles_may_be_struck_again(somebody):
     assert again.memory.memory.time == pytest.approx(DT) and gained[2] == pytest.approx(-60.0 / BODY.mass, abs=0.1)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("physique", "gravity"), [(Physique(25.0, 1.2), 9.81), (Physique(), 1.62), (Physique(110.0, 1.95), 9.81)])
 def test_any_body_anywhere(physique, gravity):
     """A child, somebody on the moon and a giant: nothing below the floor, and they stand again."""

@@ -37,6 +37,7 @@ def deep(states, things):
     return max(float((thick - gap(points.reshape(-1, 3), thing).reshape(points.shape[:2])).max()) for thing in things)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("far", "hard"), [(0.5, 1.0), (0.7, 2.0), (1.6, 2.6)])
 def test_a_wall_holds_who_is_thrown_against_it(somebody, far, hard):
     """Near it he stays on his feet; farther off he falls; nothing of him is in it."""
@@ -47,6 +48,7 @@ def test_a_wall_holds_who_is_thrown_against_it(somebody, far, hard):
     assert states[-1].ground[1] < far - 0.1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("things", "gained", "most"), [((Box((0.0, 1.0, 0.8), (6.0, 2.0, 0.2)),), 0.96, 4.0), ((Box((0.0, 0.5, 1.6), (3.0, 1.0, 2.0)),), 0.55, 5.0)])
 def test_nobody_stands_for_long_as_his_feet_can_not_come_home(somebody, things, gained, most):
     """He was frozen for six seconds, his feet kept from where they rest by a wall, and heard nothing; with one foot set across the other, too."""

@@ -45,6 +45,7 @@ def over(roots, local):
     return high, deep
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 @pytest.mark.parametrize("hard", [0.8, 1.1, 1.4])
 def test_who_is_pushed_aside_steps_as_far_as_legs_reach(somebody, side, hard):
@@ -55,6 +56,7 @@ def test_who_is_pushed_aside_steps_as_far_as_legs_reach(somebody, side, hard):
         assert pace.max() < hard + 1.1
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("gained", [(2.05, -2.16), (-2.05, -2.16), (1.7, -2.4)])
 def test_who_falls_down_stairs_has_not_lost_the_floor(somebody, gained):
     """Treads that go down beneath him are no abyss: nothing takes him out of his fall, and he gets up on them. He was taken out and fell on into the stairs."""
@@ -69,6 +71,7 @@ def test_who_falls_down_stairs_has_not_lost_the_floor(somebody, gained):
     assert abs(float(states[-1].floor) - floor_at(x, z, stairs, float(states[-1].floor) + 0.24)) < 0.2
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("gained", [(2.05, -2.16), (2.27, -0.35)])
 def test_nobody_sets_his_feet_home_through_treads(somebody, gained):
     """Who has got up with his feet apart on two treads leaves them there: a foot went 20 cm through the edge between."""
@@ -88,6 +91,7 @@ def test_who_goes_over_the_edge_of_stairs_falls_as_gravity_has_it(somebody):
     assert states[-1].active == "locomotion" and states[-1].floor == pytest.approx(floor_at(*states[-1].ground[:2], STAIRS, float(states[-1].floor) + 0.1), abs=0.02)
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize(("gained", "heading"), [((0.0, -2.4), 0.0), ((0.4, 2.4), np.pi), ((0.0, -2.6), np.pi), ((-2.2, 0.5), 0.0), ((0.0, 2.2), np.pi)])
 def test_who_falls_on_stairs_lies_on_them_and_gets_up_on_treads(somebody, gained, heading):
     """Where he lies some of his trunk lies on a tread or its edge, and none of him is far in one; he floats in no moment, and at the end his soles stand."""
@@ -114,6 +118,7 @@ def test_lying_bends_and_begins_as_he_was_struck(somebody):
     assert one.fate == FALLS and np.array_equal(one.local, other.local) and np.allclose(one.roots, other.roots)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("dt", [1 / 240, 1 / 60, 1 / 30, 0.09, 0.1])
 def test_a_fall_is_bent_in_a_few_rounds_a_step_and_what_was_shown_stays(somebody, dt):
     """No step does more than its share of the rounds, and every state is that of the fall as it is in the end."""
@@ -146,6 +151,7 @@ def test_the_band_is_solved_as_the_whole_matrix_would_be(seed):
     assert np.allclose(whole @ found, right, atol=1e-9)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("towards", [0.6, 1.6, -1.2])
 @pytest.mark.parametrize("hard", [1.9, 2.2])
 def test_who_has_got_up_on_a_platform_sets_his_feet_where_people_stand(somebody, towards, hard):

@@ -58,6 +58,7 @@ def test_clicks_are_read_and_mistakes_told(tmp_path):
         clicked(LENSES, {"cam01": {"LeftArm": (1.0, 2.0)}})
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("share", [0.5, 0.8, 1.25])
 def test_clicks_of_pictures_of_another_size_tell_no_body(share):
     """They lie in the pictures, and a body can be found for them: it hangs where nobody is."""

@@ -107,6 +107,7 @@ def test_nobody_goes_faster_than_people(surface):
     assert track.now.root[2, 3] - now.root[2, 3] == pytest.approx(0.2)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("gone", [0, 2])
 def test_who_was_lost_is_found_where_masks_show_them(surface, gone):
     """Unseen for a quarter of a second, and then 0.9 m farther on and turned by 80°; with two of the cameras, too."""

@@ -25,6 +25,7 @@ def edges(mask):
     return out
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("distortion", [(0, 0, 0, 0, 0), (-0.2, 0.05, 0.002, 0.001, 0)])
 def test_masks_and_depth_are_what_rays_meet(distortion):
     surface = stick_body()

@@ -116,6 +116,7 @@ def pictures():
     return surface, lenses, truth, [[shown(mask) for mask in masks(surface, one, lenses)] for one in truth], shown(np.zeros((160, 160), bool))
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("plates", [False, True])
 def test_pictures_are_followed(pictures, plates):
     surface, lenses, truth, seen, plate = pictures
