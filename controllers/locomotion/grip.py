@@ -53,6 +53,9 @@ LEFT = 0.85, 0.97
 """On even ground a point that grips less than the first so late leaves, and a ball that its heel's rise strains less than the second; they do not drag for the rest of their stance: labels waver
 there as somebody turns."""
 
+LEFT_ALREADY = 0.2
+"""Nor does a point that is free take hold over so much of a swing's time after it began: for a step or two, as labels waver, its foot was stopped and let go."""
+
 
 @kernel
 def _grip_rate(m, speed):
@@ -110,7 +113,7 @@ def _take_hold(m, k, height, speed, dt):
             leaves = not (m.settled or m.waits) and (m.grip[k + 1] >= 1.0 or m.rise[k // 2] > RISEN) and swing_progress(m, k // 2) > LATE
         if leaves:
             wanted = m.grip[k]
-    if m.grip[k] < left:
+    if m.grip[k] < left or even and m.grip[k] <= 0.0 and swing_progress(m, k // 2) < LEFT_ALREADY and not (m.settled or m.waits or shift_left(m) > 0.0):
         wanted = 0.0
     step = dt * _grip_rate(m, speed)
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)

@@ -121,3 +121,12 @@ def test_steps_hurry_less_and_less_as_a_foot_leaves(locomotion, far):
         memory["standing"] = memory["grip"] > 0.5
         tempo.append(tempo_kernel(memory[0]))
     assert np.abs(np.diff(tempo)).max() < 0.07 and tempo[0] == max(tempo)
+
+
+@pytest.mark.parametrize("progress, takes", [(0.05, False), (0.95, True)])
+def test_a_foot_that_has_just_left_does_not_take_hold(locomotion, progress, takes):
+    """Its label wavered, and it was stopped for a step or two: a knee was thrown by 2 m/s as a turn's first foot had left."""
+    memory = walking(locomotion, progress)
+    memory["row"][0, LABELS_AT:LABELS_AT + 2], memory["row_rate"][0, LABELS_AT:LABELS_AT + 2] = 0.3, 1.0
+    take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert (memory["grip"][0, :2] > 0.3).all() if takes else (memory["grip"][0, :2] == 0.0).all()
