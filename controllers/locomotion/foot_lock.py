@@ -57,7 +57,8 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
     ahead: of the blend's feet (`foothold`). tops, floor: of the ground (`uneven_ground`). before: (4, 2) where the blend's contact points were one step ago, in
     the world.
     """
-    ankle, now, lift, length, firm, clears = np.empty((2, 3)), np.empty((4, 2)), np.empty(2), np.empty(2), np.empty(2), np.empty(2)
+    ankle, now, lift, clears = np.empty((2, 3)), np.empty((4, 2)), np.empty(2), np.empty(2)
+    length, asked, firm = np.empty(2), np.empty(2), np.empty(2)
     on_floor(m, now)
     m.most = m.stairs = m.high[0] = m.high[1] = 0.0
     m.off[:] = 0
@@ -97,7 +98,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
         if stands:
             m.lower = max(m.lower, min(lowered + lacks_kernel(positions[hip], ankle[foot], reach - BENDS) + m.middle - m.level, DOWN))
         lacks = lacks_kernel(positions[hip], ankle[foot], reach) if even and m.grip[2 * foot] > 0.5 and ankle[foot, 2] > positions[hip, 2] else -1.0
-        missing, length[foot], firm[foot] = give_way(m, body, foot, hip, reach, m.pelvis - lowered, positions, orientations, ankle[foot], dt, work)
+        missing, length[foot], firm[foot], asked[foot] = give_way(m, body, foot, hip, reach, m.pelvis - lowered, positions, orientations, ankle[foot], dt, work)
         need = max(need, lowered + max(lacks, missing))
     most = PELVIS_DROP[0] if even else PELVIS_DROP[1] + 0.5 * min(abs(m.base[1] - m.base[0]), STEP)
     need = min(need, most)
@@ -109,7 +110,7 @@ def place_feet(m, body, legs, ahead, clearance, tops, floor, before, positions, 
             positions[j, 1] -= m.pelvis - lowered
         if not even:
             lower_heel(m, body, foot, hip, length[foot], m.pelvis - lowered, positions, orientations, ankle[foot], work)
-        nearer_kernel(positions[hip], ankle[foot], length[foot], firm[foot], REACH * leg_length(body, hip))
+        nearer_kernel(positions[hip], ankle[foot], length[foot], asked[foot], firm[foot], REACH * leg_length(body, hip))
         leg_kernel(positions, orientations, hip, ankle[foot], work)
         toes = legs.height + lie_kernel(m, 2 * foot + 1) + body.toe_end[2] * rise_ahead(m, foot)
         _bend_toes(m, body, foot, hip + 2, toes + lift[foot], positions, orientations, local, dt, work)

@@ -26,6 +26,8 @@ comes to stand, so that it does not creep in, and early as it leaves, walking an
 back …"""
 GATE = 0.035
 """… and takes hold only when it is lower than this above where it rests [m], a heel as it has risen for its leg: it was held 12 cm up as a turn began, and its knee thrown."""
+HELD_UP = (0.012, 0.03)
+"""… and the less, the higher its foot is still held over the floor to clear it, between these [m]: whose steps of a turn are long, or who comes to walk from a run, was let down by 4 cm within four steps."""
 GRIP_RATE = 30.0, 25.0
 """How fast a grip may change [1/s]: walking, where both feet are as high; and on stairs, where a foot that stops sooner ends in a riser, and running, since who runs pushes only while a foot
 grips."""
@@ -50,6 +52,9 @@ LATE, RISEN = 2.0, 0.05
 LEFT = 0.85, 0.97
 """On even ground a point that grips less than the first so late leaves, and a ball that its heel's rise strains less than the second; they do not drag for the rest of their stance: labels waver
 there as somebody turns."""
+
+LEFT_ALREADY = 0.2
+"""Nor does a point that is free take hold over so much of a swing's time after it began: for a step or two, as labels waver, its foot was stopped and let go."""
 
 
 @kernel
@@ -95,6 +100,9 @@ def _take_hold(m, k, height, speed, dt):
             left = LEFT[1] if strain > 0.0 else LEFT[0]
         wanted = max(wanted, _touches(m, k, height, speed))
     risen = FOOT * math.sin(max(m.rise[k // 2], 0.0)) if k % 2 == 0 else 0.0
+    if wanted > m.grip[k] and m.lift[k // 2] > HELD_UP[0] and not (m.settled or m.waits):
+        high = min((m.lift[k // 2] - HELD_UP[0]) / (HELD_UP[1] - HELD_UP[0]), 1.0)
+        wanted = max(m.grip[k], wanted * (1.0 - high * high * (3.0 - 2.0 * high)))
     if wanted > m.grip[k] and not m.settled and (
             m.points[k, 1] + m.raised[k] + risen > height + lie_kernel(m, k) + GATE or GATE < m.high[k // 2] <= STEP):  # over nothing it stands: and falls
         wanted = m.grip[k]
@@ -105,7 +113,7 @@ def _take_hold(m, k, height, speed, dt):
             leaves = not (m.settled or m.waits) and (m.grip[k + 1] >= 1.0 or m.rise[k // 2] > RISEN) and swing_progress(m, k // 2) > LATE
         if leaves:
             wanted = m.grip[k]
-    if m.grip[k] < left:
+    if m.grip[k] < left or even and m.grip[k] <= 0.0 and swing_progress(m, k // 2) < LEFT_ALREADY and not (m.settled or m.waits or shift_left(m) > 0.0):
         wanted = 0.0
     step = dt * _grip_rate(m, speed)
     m.grip[k] += min(max(wanted - m.grip[k], -step), step)

@@ -43,8 +43,8 @@ def tempo_kernel(m):
     and as who stops is quick or who takes short steps brisk."""
     late = 0.0
     for foot in range(2):
-        if m.standing[2 * foot] or m.standing[2 * foot + 1]:
-            late = max(late, math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
+        firm = max(m.grip[2 * foot], m.grip[2 * foot + 1])
+        late = max(late, firm * firm * (3.0 - 2.0 * firm) * math.hypot(m.offset[foot, 0], m.offset[foot, 1]))
     return m.quick * (1.0 + min(max(late - PATIENCE, 0.0) / HURRY, MOST_HURRY)) * math.sqrt(m.stretch) * briskness(m)
 
 

@@ -21,7 +21,7 @@ STEEPEST, STEEP_SOFTLY = 0.9, 0.1
 """Of that, for a knee to bend as recorded ones do, only what leaves the foot no steeper than the first [rad], within about the second: recorded walkers and runners leave the floor at 1.1 to 1.3, and feet stood on their toes' tips."""
 RISE_RATE = 8.0
 """A heel rises for its leg's sake no faster than this [rad/s] …"""
-RISE_HALFLIFE = 0.06
+RISE_HALFLIFE = 0.04
 """… and follows what its leg needs with this half-life [s] once its ball is free."""
 TAKE_HALFLIFE, LEAVE_HALFLIFE = 0.03, 0.12
 """A ball comes to bear with the first half-life [s], and to bear no more with the second once it has left …"""
@@ -33,6 +33,8 @@ EARLIER = 0.15
 """A foot that swings farther than the blend's does straightens its leg over this share of that, so that its knee brakes before it locks."""
 STRAINED = (0.35, 0.8)
 """A ball lets go, the more the farther its heel had to rise [rad] between these."""
+CROSSES = (0.006, 0.3)
+"""A heel that rises too late to give all that its leg lacks gives it over this length, and over no more than that share of what it lacks [m]: as it came to give more than that, its knee was thrown from straight."""
 SLACKENS = 12.0
 """A leg that is held straight is let go no faster than this [1/s]: with its ball, which may be free within two frames, its knee would snap by 23° in one."""
 TORN, LATE = 0.02, 1.7
@@ -64,9 +66,9 @@ def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, d
     length = soft_reach(asked - free * over, reach - free * BENT, SOFTNESS + EARLIER * (1.0 - max(grip, m.grip[2 * foot])) * over)
     rise = heel_rise_kernel(positions[hip], ball, ankle, axis, length)
     firm = grip * grip * (3.0 - 2.0 * grip)
-    rise += (1.0 - firm) * (softly_most(rise, max(STEEPEST - _steepness(body, orientations[a], a), 0.0)) - rise)
-    later, rate = spring_kernel(m.rise[foot], m.rise_rate[foot], rise * bears, RISE_HALFLIFE, dt)
-    later = max(later + firm * (min(rise * bears, m.rise[foot] + RISE_RATE * dt) - later), 0.0)
+    let_go = softly_most(rise, max(STEEPEST - _steepness(body, orientations[a], a), 0.0))
+    later, rate = spring_kernel(m.rise[foot], m.rise_rate[foot], let_go * bears, RISE_HALFLIFE, dt)
+    later = max(later + firm * (min(rise * bears, m.rise[foot] + firm * RISE_RATE * dt) - later), 0.0)
     m.rise[foot], m.rise_rate[foot] = later, rate + firm * ((later - m.rise[foot]) / dt - rate)
     tilt_kernel(orientations[a], axis, m.rise[foot], turned)
     for i in range(3):
@@ -81,9 +83,9 @@ def give_way(m, body, foot, hip, reach, sinks, positions, orientations, ankle, d
         m.torn[foot] = 1
     for i in range(3):
         turned[0, i] = ankle[i]
-    nearer_kernel(positions[hip], turned[0], length, firm, math.inf)  # what does not stand asks less of the pelvis
+    nearer_kernel(positions[hip], turned[0], length, asked, firm, math.inf)  # what does not stand asks less of the pelvis
     m.taut[foot] = taut = max(grip, m.taut[foot] - SLACKENS * dt)
-    return lacks_kernel(positions[hip], turned[0], reach), length, taut * taut * (3.0 - 2.0 * taut)
+    return lacks_kernel(positions[hip], turned[0], reach), length, taut * taut * (3.0 - 2.0 * taut) * bears * bears * (3.0 - 2.0 * bears), asked
 
 
 @kernel
@@ -133,16 +135,25 @@ def lower_heel(m, body, foot, hip, length, sinks, positions, orientations, ankle
 
 
 @kernel
-def nearer_kernel(hip, ankle, length, firm, most):
-    """An ankle that is farther from its hip than its leg is long comes nearer, as far as its foot does not stand firmly, and to `most` [m] in any case."""
+def nearer_kernel(hip, ankle, length, asked, firm, most):
+    """An ankle that is farther from its hip than its leg is long comes nearer, as far as its foot does not stand firmly, and to `most` [m] in any case; smoothly where its
+    leg was `asked` to be longer [m]."""
     distance = distance_kernel(hip, ankle)
     far = min(distance, most)
-    if far > length:
-        far = length + firm * (far - length)
+    within = min(CROSSES[0], CROSSES[1] * max(asked - length, 0.0))
+    far -= (1.0 - firm) * over_kernel(far - length, within)
     if far < distance:
         share = far / distance
         for i in range(3):
             ankle[i] = hip[i] + (ankle[i] - hip[i]) * share
+
+
+@kernel
+def over_kernel(x, within):
+    """How far x is over 0, coming to be so evenly as it goes from −within to within."""
+    if x <= -within:
+        return 0.0
+    return x if x >= within else (x + within) ** 2 / (4.0 * within)
 
 
 @kernel

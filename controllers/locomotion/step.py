@@ -66,6 +66,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         heed_halt(m, wish[n], settings, table, dt)
         onset, first = m.onset, m.first
         pace = _share_of_cycle(m, table, settings.agility, dt) / dt if onset > 0.0 else 0.0
+        step = 0.0
         begin_turn(m, turns, wish[n], fresh)
         turn_corner(m, wish[n], dt)
         turn_back(m, turns, wish[n], settings, fresh)
@@ -86,7 +87,7 @@ def step_kernel(memory, wish, dt, settings, body, legs, walk, run, table, change
         idle_kernel(m, idle, settings.idle, dt)
         if m.turn != 0.0:
             turned_row(m, turns, m.turned, fresh)
-            end_turn(m)
+            end_turn(m, step)
             show_row(m, settings, fresh, legs, dt)
         else:
             blend_series(m, settings, table, fresh, legs, dt)

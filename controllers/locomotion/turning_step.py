@@ -67,6 +67,8 @@ FOLLOWS = 0.04
 """On the spot shoulders turn by this share of it once both feet stand."""
 SHIFTED = 0.6
 """On the spot the body goes back to where it stood until so long after its first foot left, in phase."""
+LEAVES = 0.03
+"""From so long before its first foot leaves until so long after that [s] phase comes to run ten times as fast: at once, feet were thrown at 2 m/s within a step."""
 MOMENT = 0.004
 """How fast a turn begins is told over this long in phase."""
 AROUND = (0.05, 0.12)
@@ -148,7 +150,7 @@ def enter_turn(m, turns, turn, since, row):
         turn_ahead(m, turns, 1.0, BEFORE + STRIKE, ends)
         m.stray[0], m.stray[1] = m.ground[0] - ends[0], m.ground[1] - ends[1]
     m.phase = (1.0 if m.first == 0 else 0.5) + since
-    walked = not (m.settled or m.waits or m.onset > 0.0)
+    walked = not (m.settled or m.waits or shift_left(m) > 0.0)
     m.settled, m.waits, m.onset = 0, 0, 0.0
     m.stop = BEFORE + STRIKE if m.spot else 0.0
     _begin_smoothly(m, turns, since, walked, row)
@@ -188,9 +190,9 @@ def leave_turn(m):
 
 
 @kernel
-def end_turn(m):
-    """Leave a turn that is over: its second foot is down."""
-    if m.waits or m.turned >= END - 1e-4:
+def end_turn(m, step):
+    """Leave a turn that is over: its second foot is down, and another step in phase would lead beyond it. Cut short, it stood still for what was left of its time."""
+    if m.waits or m.turned + step > END:
         leave_turn(m)
         m.waits = m.spot
 
@@ -242,9 +244,11 @@ def way_kernel(m, turns, since):
 
 @kernel
 def _time_since(m, turns, since):
-    """How long after its first toe-off a turn is there in phase [s], by the rule of Simpson; negative before it."""
-    near = turn_time(m, turns, -1e-6 if since < 0.0 else 0.0)
-    return since * (near + 4.0 * turn_time(m, turns, 0.5 * since) + turn_time(m, turns, since)) / 6.0
+    """How long after its first toe-off a turn is there in phase [s]; negative before it. By the rule of Simpson, and exactly where its pace changes evenly in time."""
+    slow, fast = _paces(m, turns)
+    at = min(max(since, -LEAVES * slow), LEAVES * fast)
+    time = 2.0 * at / (_leaving(slow, fast, at) + _leaving(slow, fast, 0.0)) * turn_time(m, turns, 0.5 * at) * _leaving(slow, fast, 0.5 * at)
+    return time + (since - at) * (turn_time(m, turns, at) + 4.0 * turn_time(m, turns, 0.5 * (at + since)) + turn_time(m, turns, since)) / 6.0
 
 
 @kernel
@@ -260,21 +264,37 @@ def turned_row(m, turns, since, row):
 
 @kernel
 def turn_time(m, turns, since):
-    """How long a phase lasts there, at the usual agility [s]."""
-    recorded = SHIFTS[m.spot] / BEFORE if since < 0.0 else min(max(turn_kernel(m, turns, DURATION_AT, since), QUICKEST[m.spot]), LONGEST)
-    return recorded / _tempo(m, since)
+    """How long a phase lasts there, at the usual agility [s]: as its first foot leaves it comes to run as fast as after that evenly in time."""
+    slow, fast = _paces(m, turns)
+    whole = _tempo(m, 0.0) / (slow if since < 0.0 else fast) if since <= 0.0 else _recorded(m, turns, since)
+    at = min(max(since, -LEAVES * slow), LEAVES * fast)
+    return whole * (slow if since < 0.0 else fast) / (_leaving(slow, fast, at) * _tempo(m, since))
+
+
+@kernel
+def _paces(m, turns):
+    """How fast phase runs just before the first toe-off and after it [1/s]."""
+    return _tempo(m, 0.0) * BEFORE / SHIFTS[m.spot], _tempo(m, 0.0) / _recorded(m, turns, 0.0)
+
+
+@kernel
+def _leaving(slow, fast, at):
+    """How fast phase runs that goes over evenly in time from a slow pace to a fast one, at a phase from −LEAVES slow to LEAVES fast [1/s]."""
+    return math.sqrt(max(slow * slow + (fast - slow) * (at / LEAVES + slow), 0.0))
+
+
+@kernel
+def _recorded(m, turns, since):
+    """How long a phase of recorded people lasts there, from the first toe-off on [s]."""
+    return min(max(turn_kernel(m, turns, DURATION_AT, since), QUICKEST[m.spot]), LONGEST)
 
 
 @kernel
 def lead_turn(m, turns, agility, dt):
     """How far a turn runs on in phase in dt; command and velocity become those of its ground frame meanwhile."""
     m.turn_stretch = _stretch(m, turns, agility)
-    until = -m.turned * turn_time(m, turns, 0.5 * m.turned) / agility  # the first toe-off, from which on phase runs otherwise
-    if 0.0 < until < dt:
-        step = (dt - until) * agility / turn_time(m, turns, 0.0) - m.turned
-    else:
-        half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
-        step = min(dt * agility / turn_time(m, turns, m.turned + half), END - m.turned)
+    half = 0.5 * dt * agility / turn_time(m, turns, m.turned)
+    step = dt * agility / turn_time(m, turns, m.turned + half)
     turned = way_kernel(m, turns, m.turned + step) - way_kernel(m, turns, m.turned)
     pace, fades = _pace(m, agility, m.turned + 0.5 * step), 2.0 ** (-0.5 * dt / GLIDES)
     m.glide[0], m.glide[1] = fades * m.glide[0], fades * m.glide[1]

@@ -1,11 +1,12 @@
 """Measure what people do: start, stop, turn, change gait, at every phase, and twice ten minutes of restless hands.
 
-    python scripts/measure/changes.py [--quick] [--recordings DIR] [--strips DIR] [--only PART ...] [--set SETTING=VALUE ...]
+    python scripts/measure/changes.py [--quick] [--recordings DIR] [--strips DIR] [--only PART ...] [--set SETTING=VALUE ...] [--heights M ... --rates N ...]
 
 All figures are told from the final pose alone (`_motion.py`): mass centre by segment masses, friction that the ground
 must give, joint accelerations over the recordings' own 99th percentile, feet. DIR is the folder of motion capture: the
 same figures of its actor's starts, stops, crossings and idles are printed beside ours. --strips draws the ten worst
-moments of every part as stick figures.
+moments of every part as stick figures. --heights and --rates measure restless hands of bodies so high, stepped so many
+times a second, instead.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from _bodies import bodies
 from _figures import at_rest, figures, told
 from _motion import Motion
 from _plots import pictures
@@ -24,10 +26,11 @@ from _strips import draw
 
 
 from gambol.controllers.contract import Intent
+from gambol.controllers.jump import Physique
 from gambol.controllers.locomotion import DEFAULT_LIBRARY, Library, Locomotion, Settings
 from gambol.controllers.navigation import steer
 
-FPS = 60
+FPS, STANDARD = 60, Physique().height
 PHASES = 24
 WISHES = {"rest": (0, 0, 0), "0.7": (0.7, 0, 0), "1.3": (1.3, 0, 0), "1.8": (1.8, 0, 0), "2.5": (2.5, 0, 0), "3.5": (3.5, 0, 0),
           "left": (0, 0, 0.45), "right": (0, 0, -0.45), "back": (-0.6, 0, 0), "spot left": (0, 1.5, 0), "spot right": (0, -1.5, 0),
@@ -276,6 +279,9 @@ def main() -> None:
     parser.add_argument("--recordings", type=Path, help="the folder of motion capture")
     parser.add_argument("--strips", type=Path, help="a folder for the worst moments")
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="settings other than the usual")
+    parser.add_argument("--heights", nargs="+", type=float, default=[], metavar="M", help="bodies so high instead")
+    parser.add_argument("--rates", nargs="+", type=int, default=[], metavar="N", help="stepped so many times a second instead")
+    parser.add_argument("--seed", type=int, default=13, help="of their hands")
     arguments = parser.parse_args()
     pictures(parser, arguments.strips)
     library = Library.load(arguments.library)
@@ -284,6 +290,9 @@ def main() -> None:
     except (TypeError, ValueError) as error:
         parser.error(f"--set: needs NAME=VALUE of {', '.join(Settings._fields)} ({error})")
     bench = Bench(Locomotion(library, given), arguments.quick)
+    if arguments.heights or arguments.rates:
+        bodies(bench.locomotion, arguments.heights or [STANDARD], arguments.rates or [FPS], hands, arguments.seed)
+        return
     if arguments.recordings:
         recorded(arguments.recordings, library)
     for part in arguments.only:

@@ -42,7 +42,7 @@ def played(walker, ticks, path=None):
 
 
 WALK = Wish(move=(0.2, 1.0))
-HANDS = [Wish(pressed=("study=ours lpcr@4",)), *[WALK] * 44, Wish(pressed=("pins=hold",)),
+HANDS = [Wish(pressed=("study=ours lpcr@4",)), *[WALK] * 48, Wish(pressed=("pins=hold",)),
          *[Wish(pressed=(f"pin=0:{0.9 + 0.01 * k:.4f}/1.2000/1.0000",)) for k in range(20)],
          Wish(pressed=("pin=1:",)), *[Wish()] * 10, Wish(pressed=("study=ours@4",)), *[Wish()] * 5,
          Wish(pressed=("pins=",)), *[WALK] * 20, Wish(pressed=("back=30",)), *[WALK] * 10,

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from gambol.controllers.locomotion.grip import LATE, LEFT, hold_kernel, take_foot
 from gambol.controllers.locomotion.kernel import LABELS_AT
 from gambol.controllers.locomotion.memory import RUN, WALK
+from gambol.controllers.locomotion.root_motion import tempo_kernel
 from playing import FPS
 
 HEEL, BALL = 0, 1
@@ -99,3 +100,33 @@ def test_what_has_just_come_down_holds_on(locomotion, family, phase, grip, label
     memory["phase"], memory["family"], memory["grip"], memory["row"][0, LABELS_AT], memory["row_rate"][0, LABELS_AT] = phase, family, grip, label, rate
     take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
     assert memory["grip"][0, HEEL] >= np.float32(grip)
+
+
+@pytest.mark.parametrize("lift, takes", [(0.0, True), (0.045, False)])
+def test_a_foot_that_is_held_up_does_not_take_hold(locomotion, lift, takes):
+    """It was let down by 4 cm within four steps, as a turn's long steps ended and as a run became a walk."""
+    memory = walking(locomotion, 0.85)
+    memory["row"][0, LABELS_AT:LABELS_AT + 2], memory["row_rate"][0, LABELS_AT:LABELS_AT + 2], memory["lift"] = 1.0, 1.0, lift
+    take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert (memory["grip"][0, :2] > 0.3).all() if takes else (memory["grip"][0, :2] == 0.0).all()
+
+
+@given(st.floats(0.0, 1.0))
+def test_steps_hurry_less_and_less_as_a_foot_leaves(locomotion, far):
+    """A foot that was far off and half let go ended the hurry within a step: the other one, which swung, was stopped by as much as two fifths."""
+    memory, tempo = walking(locomotion, 2.0), []
+    memory["offset"] = [[[far, 0.0, 0.0], [0.0, 0.0, 0.0]]]
+    for grip in np.linspace(1.0, 0.0, 101):
+        memory["grip"][0, :2] = grip
+        memory["standing"] = memory["grip"] > 0.5
+        tempo.append(tempo_kernel(memory[0]))
+    assert np.abs(np.diff(tempo)).max() < 0.07 and tempo[0] == max(tempo)
+
+
+@pytest.mark.parametrize("progress, takes", [(0.05, False), (0.95, True)])
+def test_a_foot_that_has_just_left_does_not_take_hold(locomotion, progress, takes):
+    """Its label wavered, and it was stopped for a step or two: a knee was thrown by 2 m/s as a turn's first foot had left."""
+    memory = walking(locomotion, progress)
+    memory["row"][0, LABELS_AT:LABELS_AT + 2], memory["row_rate"][0, LABELS_AT:LABELS_AT + 2] = 0.3, 1.0
+    take_foot(memory[0], 0, locomotion.tables.legs.height, STILL, STILL, 1 / FPS)
+    assert (memory["grip"][0, :2] > 0.3).all() if takes else (memory["grip"][0, :2] == 0.0).all()

@@ -4,9 +4,11 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gambol.controllers.body import forward_kinematics
-from gambol.controllers.locomotion.short_leg import give_way
+from gambol.controllers.locomotion.short_leg import give_way, nearer_kernel
 from gambol.controllers.navigation import floor_at, steer
 
 COUNT, FPS, CHANGES, WISHES = 120, 60, 30, 6
@@ -59,3 +61,43 @@ def test_a_leg_is_let_go_more_slowly_than_its_ball(locomotion):
         m.grip[:2] = grip
         later = give_way(m, body, 0, hip, 0.8, 0.0, positions, orientations.copy(), positions[hip] + [0.0, -0.9, 0.0], 1 / FPS, np.empty((5, 3, 3)))[2]
     assert later < 0.05
+
+
+def test_a_ball_that_comes_to_bear_stretches_no_leg_at_once(locomotion):
+    """Firm within five steps of 1/144 s, it pulled its leg straight, since its heel was not yet free to rise: the knee left from there at once."""
+    memory = locomotion.start((0.0, 0.0, 0.0)).memory.copy()
+    m, body, legs = memory.reshape(-1).view(np.recarray)[0], locomotion.tables.body, locomotion.tables.legs
+    hip, firm = legs.hip[0], []
+    positions, orientations = (a.astype(np.float32) for a in forward_kinematics(locomotion.skeleton, np.array([0.0, 0.9, 0.0]), np.tile(np.eye(3), (len(locomotion.skeleton), 1, 1))))
+    m.bears[:] = m.bears_rate[:] = m.taut[:] = 0.0
+    for grip in (0.2, 0.4, 0.6, 0.8, *25 * (1.0,)):
+        m.grip[:2] = grip
+        firm.append(give_way(m, body, 0, hip, 0.8, 0.0, positions, orientations.copy(), positions[hip] + [0.0, -0.9, 0.0], 1 / 144, np.empty((5, 3, 3)))[2])
+    assert firm[3] < 0.4 and firm[-1] > 0.9 and np.diff(firm).min() >= 0.0
+
+
+def test_a_heel_that_rises_is_let_go_smoothly(locomotion):
+    """As its ball let go it was turned back by twice as much a step as it had risen: ankle and knee were thrown at 4 m/s within a step of 1/144 s."""
+    memory = locomotion.start((0.0, 0.0, 0.0)).memory.copy()
+    m, body, legs = memory.reshape(-1).view(np.recarray)[0], locomotion.tables.body, locomotion.tables.legs
+    hip, rises = legs.hip[0], []
+    positions, orientations = (a.astype(np.float32) for a in forward_kinematics(locomotion.skeleton, np.array([0.0, 0.9, 0.0]), np.tile(np.eye(3), (len(locomotion.skeleton), 1, 1))))
+    m.bears[:] = m.taut[:] = 1.0
+    c, s = np.float32(np.cos(0.8)), np.float32(np.sin(0.8))
+    orientations[hip + 2] = [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]  # as steep as feet are that leave
+    for grip in (*5 * (1.0,), 0.83, 0.66, 0.49, 0.32, 0.15, *5 * (0.0,)):
+        m.grip[:2] = 0.0, grip
+        give_way(m, body, 0, hip, 0.8, 0.0, positions, orientations.copy(), positions[hip] + np.float32([0.0, -0.8, -0.45]), 1 / 144, np.empty((5, 3, 3)))
+        rises.append(float(m.rise[0]))
+    assert max(rises) > 0.25 and np.abs(np.diff(rises, 2)[2:]).max() < 0.025
+
+
+@given(st.floats(0.0, 0.05), st.floats(0.0, 1.0))
+def test_a_leg_comes_to_be_long_enough_smoothly(lacks, firm):
+    """A heel that had risen too late gave more than its leg lacked from one step to the next; a knee was thrown from straight at 2.5 m/s."""
+    lengths = []
+    for distance in np.arange(0.76, 0.84, 0.0005):
+        ankle = np.array([0.0, -distance, 0.0])
+        nearer_kernel(np.zeros(3), ankle, 0.8, 0.8 + lacks, firm, np.inf)
+        lengths.append(-ankle[1])
+    assert np.abs(np.diff(lengths, 2)).max() < (1.0 - firm) * 0.0005 * min(1.0, 0.0005 / (2.0 * min(0.006, 0.3 * lacks) + 1e-9)) * 1.05 + 1e-9

@@ -8,6 +8,7 @@ from gambol.controllers.body import contact_points, feet_apart, forward_kinemati
 from gambol.controllers.contract import Intent
 from gambol.controllers.locomotion import turning_step_build
 from gambol.controllers.locomotion.cycles import track
+from gambol.controllers.locomotion.turning_step import turn_time
 from gambol.controllers.navigation import steer
 from playing import play
 
@@ -265,3 +266,25 @@ def test_a_heading_that_is_no_number_is_none(locomotion, towards):
     for _ in range(30):
         state, pose = locomotion.step(state, Intent(np.zeros(3), towards=np.array(towards)), 1 / FPS)
     assert state.memory["turn"] == 0.0 and np.isfinite(pose.rotations).all()
+
+
+@pytest.mark.parametrize("speed, side", [(0.0, 1.0), (1.3, 1.0), (1.3, -1.0)])
+def test_a_turn_runs_on_evenly_as_its_first_foot_leaves(locomotion, speed, side):
+    """Its phase came to run ten times as fast within a step, and that foot was thrown at 2 m/s."""
+    memory = turned(locomotion, np.array([90.0 * side]), speed, 0.1)[-1].memory
+    assert memory["turn"][0] != 0.0
+    paces = np.array([1.0 / turn_time(memory[0], locomotion.tables.turns, since) for since in np.arange(-0.06, 0.2, 0.0005)])
+    times = np.cumsum(0.0005 / paces)
+    assert paces.max() > 2.0 * paces.min() and np.abs(np.diff(paces) / np.diff(times)).max() < 120.0  # [1/s²]; at once: thousands
+
+
+@pytest.mark.parametrize("rate", [60, 144, 240])
+def test_a_turn_that_ends_does_not_stand_still_for_a_step(locomotion, rate):
+    """What its last step had left of its time nothing moved in: hips were thrown by 45 m/s² at 144 steps a second."""
+    states = turned(locomotion, np.array([90.0, 135, 178, -90, -135, -178]), 1.3, 1.6, rate)
+    turning = np.array([state.memory["turn"] != 0.0 for state in states])
+    ways = np.unwrap(np.array([state.ground[:, 2] for state in states]), axis=0)
+    for n in range(6):
+        last = np.flatnonzero(turning[:, n])[-1]
+        steps = np.abs(np.diff(ways[last - 3:last + 2, n]))
+        assert steps[-1] > 0.6 * steps[:-1].min()
