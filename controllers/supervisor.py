@@ -255,10 +255,10 @@ class Supervisor(Controller):
             told = told or found
         return told
 
-    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
-        """The leap that intent.leap says, with how one of them could make it; None where none could."""
+    def found(self, state: CharacterState, intent: Intent, ask: Callable[[], None] = lambda: None) -> Leap | None:
+        """The leap that intent.leap says, with how one of them could make it; None where none could. ask: see `pondered`."""
         known(state, intent)
-        found = (part.found(self.active(state)[1], intent) for part in self.parts.values())
+        found = (part.found(self.active(state)[1], intent, ask) for part in self.parts.values())
         return next((leap for leap in found if leap is not None), None)
 
     def active(self, state: CharacterState) -> tuple[str, CharacterState]:

@@ -143,8 +143,8 @@ class Controller(Protocol):
         return None
         yield
 
-    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
-        """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not."""
+    def found(self, state: CharacterState, intent: Intent, ask: Callable[[], None] = lambda: None) -> Leap | None:
+        """The leap that intent.leap says, with how it could be made from a state or one nearly like it; None if it could not. ask: see `pondered`."""
         return None
 
     def gain(self, strike: Strike) -> np.ndarray | None:

@@ -37,6 +37,8 @@ THINKS, WAITED = 0.5, 0.5
 """He thinks of his leap so much sooner than he would brake [s]; nearer to what is ahead than this share of how far he looks for that he hurries to know."""
 BRAKES = 6
 """Who brakes already as he thinks of his leap brakes on for so many steps, by when he knows: who let go of that until he knew there is none would come to rest too late."""
+MOST = 18
+"""Of the leap that goes off by itself he asks about so many questions: of 47 that were found as hands ran at things 46 took no more; who asked on, up to a hundred, came there before he knew."""
 LATE, TURNED = 6, 0.35
 """It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
 
@@ -161,14 +163,22 @@ class Footfall(NamedTuple):
 def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, float], asks: Asks, around: Sequence[Any], dt: float,
                 ask: Callable[[], None] = _silent) -> RunUp | None:
     """The run-up of somebody who goes on with a velocity (2,) [m/s] to the last footfall from which he can leap over what he can't run over, or onto it; None
-    where there is none. ask: is called before each question."""
+    where there is none, or none that is found with `MOST` questions. ask: is called before each question, and once more for each part of one that takes as long as most do."""
     footfalls, blocked = _footfalls(controller, state, asks, around, dt)
     if blocked is None:
         return None
+    asked = 0
+
+    def counts() -> None:
+        nonlocal asked
+        asked += 1
+        ask()
     for footfall in reversed(footfalls):
         for leap in _beyond(footfall, blocked, float(state.floor), around):
-            ask()
-            found = controller.found(footfall.state, but(footfall.intent, leap=leap))
+            if asked >= MOST:
+                return None
+            counts()
+            found = controller.found(footfall.state, but(footfall.intent, leap=leap), counts)
             if found is not None:
                 return RunUp(footfall.number, None, found, velocity)
     return None

@@ -16,7 +16,7 @@ from ..body import Start, airtime_up, measures
 from ..crouching import Crouching
 from ..motion import STANDS, Carried, Plan, carried, hangs, over_nothing, steps_over
 from ..muscles import strongest
-from ..reach import SETS_FEET, Pieces, Reach, Refused, meant, whole
+from ..reach import DEAR, SETS_FEET, Pieces, Reach, Refused, counted, goes_on, meant
 from ..starting import FEET, Jumping, along_of, astride, cramped, goes, landed, off_one, off_under, on_ground, on_its_floor, ready, rebounding, sets_feet, start_of, turning
 
 STILL = 0.25
@@ -86,8 +86,8 @@ class Answers(Reach):
         found, why = yield from self.seen(start, place, floor, leap.airtime, intent.around, False)
         return why if found is None else found.made
 
-    def found(self, state: CharacterState, intent: Intent) -> Leap | None:
-        """The leap that can be made from a state, with how; None where it can't."""
+    def found(self, state: CharacterState, intent: Intent, ask: Callable[[], None] = lambda: None) -> Leap | None:
+        """The leap that can be made from a state, with how; None where it can't. ask: see `pondered`."""
         leap = intent.leap
         if leap is None:
             return None
@@ -95,7 +95,7 @@ class Answers(Reach):
             start, place, floor, _ = self._meant(state, leap, intent.around)
         except Refused:
             return None
-        found, _ = whole(self.seen(start, place, floor, leap.airtime, intent.around, False))
+        found, _ = counted(self.seen(start, place, floor, leap.airtime, intent.around, False), DEAR, ask)
         return None if found is None else replace(leap, how=found.arc.how)
 
     @cached_property
@@ -149,9 +149,11 @@ class Answers(Reach):
         return deep >= 0.2 * size and (over_nothing(self.physique.skeleton, state.pose, state.contacts, intent.around, float(state.floor), size)
                                        or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
 
-    def _waits(self, state: CharacterState) -> bool:
-        """Whether it will be in a moment where it is now."""
-        return isinstance(state.memory, Crouching) or not isinstance(state.memory, Jumping) and self._stands(state)
+    def _waits(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> bool:
+        """Whether it may as well leap in a moment: it crouches, stands, or hardly moves, and pushes off both feet."""
+        if isinstance(state.memory, Jumping):
+            return False
+        return isinstance(state.memory, Crouching) or self._stands(state) or not goes_on(self.placed(state, leap, around)[0])
 
     def _sets_feet(self, state: CharacterState) -> bool:
         """Whether it goes, and still has to set its feet before it crouches."""

@@ -27,7 +27,7 @@ class Searches(Answers):
 
     def sought(self, state: CharacterState, intent: Intent, onward: Onward | None = None) -> Plan:
         """The same, sought in pieces. onward: of the step before, where the same was asked, or of a place near by. Refused until a plan is found, with why there is none as
-        far as that is known. Who stands looks at one plan in each step; who moves is elsewhere by then, and looks at all of them at once."""
+        far as that is known. Who rests, or nearly, looks at one plan in each step; who goes on is elsewhere by then, and looks at all of them at once."""
         seeking, steps, began, asked, anew = self._seeks(state, intent) if onward is None or onward.seeking is None else onward
         assert seeking is not None
         steps += 1
@@ -53,8 +53,9 @@ class Searches(Answers):
 
     def _seeks(self, state: CharacterState, intent: Intent) -> Onward:
         """The beginning of seeking from a state."""
-        place = None if intent.leap is None else intent.leap.place
-        return Onward(Seeking(self._looked_for(state, intent, self._waits(state), True)), 0, np.array(state.pose.root, float), place)
+        leap = intent.leap
+        waits = leap is not None and self._waits(state, leap, intent.around)
+        return Onward(Seeking(self._looked_for(state, intent, waits, True)), 0, np.array(state.pose.root, float), None if leap is None else leap.place)
 
     def _looked_for(self, state: CharacterState, intent: Intent, parted: bool = False, goes_on: bool = False) -> Pieces[Found | tuple[str, np.ndarray | None, np.ndarray]]:
         """The jump that `intent.leap` asks for, in pieces; if there is none why, the nearest place (3,) that can be reached, and where (3,) it stands.

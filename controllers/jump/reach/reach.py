@@ -40,7 +40,7 @@ CARRIED = (0.75,), (0.6,), (0.95,), (1.2,)
 SENDS = 4.2
 """Each metre that a foot stands aside of who pushes off it, at standard height, sends him so much faster [m/s] to the other side: runners lean into arcs."""
 WALKS = 0.3
-"""Who goes no faster than this [m/s] is carried nowhere."""
+"""Who goes no faster than this [m/s] is carried nowhere; and who pushes off both feet is in a moment where he is now."""
 
 
 class Found(NamedTuple):
@@ -94,7 +94,7 @@ class Reach(Arcs):
         why = self.footing(start, place, floor, around)
         if why:
             return None, why
-        if tries is None and start.single is not None:
+        if tries is None and goes_on(start):
             tries = MOST
         told, count, arcs = "", 0, self.arcs(start, place, floor, airtime, around)
         arc = yield from following(arcs)
@@ -241,6 +241,11 @@ class Reach(Arcs):
         left = np.array([way[2], 0.0, -way[0]]) / max(float(np.linalg.norm(way)), 1e-9)
         off, off_middle = (float((start.centre - place) @ left) * left for place in (start.feet[start.single, :3], self.middle(start, floor)))
         return SENDS * math.sqrt(-self.gravity[1] / (9.81 * self.physique.size)) * off, off_middle
+
+
+def goes_on(start: Start) -> bool:
+    """Whether somebody goes on as he leaps, so that the next moment is another."""
+    return start.single is not None or math.hypot(start.velocity[0], start.velocity[2]) > WALKS
 
 
 def _asked(start: Start, place: np.ndarray, floor: float, airtime: float | None, tries: int | None) -> tuple[Any, ...]:
