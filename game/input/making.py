@@ -29,7 +29,7 @@ FEW, SLOW, TURNS = 1.4, 0.5, 0.35
 ASKEW = 0.15
 """A standing body faces where it jumps to within this [rad]."""
 PATIENCE = 1.0
-"""So long [s] a jump that can't be made from a stand is asked for ..."""
+"""So long [s] a jump that can't be made from a stand is asked for, once he stands who still ran ..."""
 LONGER = 2.0
 """... and by who has just come to rest for it: until his last foot is beside the other."""
 PASSED = 0.12
@@ -59,7 +59,7 @@ BEYOND, EACH, HIGHEST, EVEN = 2.0, 0.2, 2.0, 0.06
 class Making:
     """How far somebody is with a move.
 
-    steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for, of one from a stand not while it still landed; aimed:
+    steps: made of it. path, progress: along it. asked: for how many steps its jump was asked for, of one from a stand not while it still landed or ran; aimed:
     for how many it was aimed at; jumped: whether it began. passed: whether what its run-up leads to lies behind for good. hops: x, z [m] where its hop
     lands, and the heading [rad] that it keeps; hopped: of the hop before, None where there was none. run_up: what it knows of its run-up. stood: for how
     many steps somebody has stood on his way. why: what last kept him from leaping off a foot that was under him. aside: what is known of a leap to a place beside his way;
@@ -198,7 +198,8 @@ class Making:
         if not runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
-        return replace(self, asked=self.asked + (runs or now is None), hops=hops), replace(intent, leap=leap)
+        stands = now is None and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
+        return replace(self, asked=self.asked + (runs or stands), hops=hops), replace(intent, leap=leap)
 
     def _back(self, move: Move, jump: Jump, state: CharacterState, far: float, speed: float, behind: bool) -> bool:
         """Whether somebody who goes so fast [m/s] on a run-up turns back to a place that lies behind, so far away [m], or that no foot sends him to any more who asked for it: where all is even."""
