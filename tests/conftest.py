@@ -28,7 +28,7 @@ from hypothesis import HealthCheck, is_hypothesis_test, settings  # noqa: E402
 from sampling import BATCHES, KINDS  # noqa: E402
 from tiers import left_out  # noqa: E402
 
-for name, same, tries in (("gambol", True, 40), ("thorough", True, 100), ("seek", False, 100)):  # a busy machine breaks no law, and fixtures here are values
+for name, same, tries in (("gambol", True, 25), ("thorough", True, 100), ("seek", False, 100)):  # a busy machine breaks no law, and fixtures here are values
     settings.register_profile(name, derandomize=same, max_examples=tries, database=None, deadline=None, print_blob=True,
                               suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 settings.load_profile("gambol")
@@ -76,7 +76,7 @@ def pytest_collection_modifyitems(config, items):
         gone = left_out(items, config.args)
         config.hook.pytest_deselected(items=[item for item in items if item in gone])
         items[:] = [item for item in items if item not in gone]
-    usual, share = settings().max_examples, 1.0 if every else 0.5
+    usual, share = settings().max_examples, 1.0 if every else 0.35
     for law in {item.obj for item in items if is_hypothesis_test(getattr(item, "obj", None))}:
         own = law._hypothesis_internal_use_settings
         tries = own.max_examples if own.max_examples == usual else math.ceil(share * own.max_examples)

@@ -212,6 +212,7 @@ def test_who_thought_of_his_leap_makes_one_plan_as_it_goes_off(library, monkeypa
     assert np.array_equal(whole.local, again.local) and np.array_equal(whole.roots, again.roots)
 
 
+@pytest.mark.thorough
 def test_a_leap_held_at_a_run_over_a_gap_too_wide_for_it_is_braked(library):
     who = person(library.tuned(Settings(idle=0.0)))
     states = running(who, (box(-3.0, 1.0, 8.0), box(8.5, 1.0)), 1.0, 5.0)
@@ -277,7 +278,7 @@ def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=420):
     return states, known
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("things, floor, far", [((box(5.0, 0.33),), 0.0, 5.0), ((box(-3.0, 1.0, 8.0), box(7.0, 1.0)), 1.0, 5.0), ((box(5.0, 1.8),), 0.0, 5.0)])
 @pytest.mark.parametrize("run", [0.0, 0.9])
 def test_hands_that_go_straight_at_what_is_ahead_come_to_rest_before_it_and_are_not_led_aside(library, things, floor, far, run):
