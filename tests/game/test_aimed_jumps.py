@@ -133,7 +133,6 @@ def test_who_lets_go_is_told_why_not_without_coordinates(somebody):
     assert told == [f"no jump: {seen.why}"]
 
 
-@pytest.mark.thorough
 def test_a_runner_sees_how_he_would_lie_in_what_his_leap_would_touch(somebody):
     """A beam across the way, and none."""
     run, seen = Wish(move=(0.0, 1.0), run=1.0), {}

@@ -68,7 +68,6 @@ def test_who_joins_stands_apart_from_bodies_of_points_whoever_came_first(walker)
         assert body.follows.performer == first.name and [c.name for c in line.now.before.characters] == [first.name, second.name, body.name]
 
 
-@pytest.mark.thorough
 def test_a_log_with_hands_on_points_replays_to_the_bit(tmp_path, walker):
     path = tmp_path / "a.gambol"
     _, moments = played(walker, HANDS, path)

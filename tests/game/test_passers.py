@@ -67,7 +67,6 @@ def test_what_is_no_number_of_people_is_refused(walker, wrong):
         Timeline(opening(walker)).advance(pressed(wrong))
 
 
-@pytest.mark.thorough
 def test_a_log_has_them(walker, tmp_path):
     game = Play(walker, log=LogWriter(tmp_path / "played.gambol", walker, 1))
     game.do("crowd=4")
