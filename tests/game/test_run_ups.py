@@ -212,7 +212,6 @@ def test_who_thought_of_his_leap_makes_one_plan_as_it_goes_off(library, monkeypa
     assert np.array_equal(whole.local, again.local) and np.array_equal(whole.roots, again.roots)
 
 
-@pytest.mark.thorough
 def test_a_leap_held_at_a_run_over_a_gap_too_wide_for_it_is_braked(library):
     who = person(library.tuned(Settings(idle=0.0)))
     states = running(who, (box(-3.0, 1.0, 8.0), box(8.5, 1.0)), 1.0, 5.0)

@@ -98,7 +98,6 @@ def test_whoever_fits_under_a_beam_walks_under_it_and_others_round_it(library, h
     assert someone.status(states[-1]).kind == "done" and (aside(states) > 1.0) == round_it
 
 
-@pytest.mark.thorough
 def test_a_child_walks_through_a_door_of_half_a_metre_and_a_giant_round_one_of_his_shoulders(library):
     child, giant = walker(library, 0.9), walker(library, 2.4)
     states = going(child, Goal((0.0, 3.5)), door(0.5))
