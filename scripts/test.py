@@ -2,8 +2,8 @@
 
     python3 scripts/test.py [--thorough] [arguments of pytest]
 
-Without arguments the tests are run on as many cores as there are, up to eight; with --thorough alone also those that see more widely what a quicker one sees, and all cases
-of families of slow ones.
+All of them, with any options that begin with "-", are run on as many cores as there are, up to eight; what names some of them, a path or what follows -k, one after the
+other. With --thorough also those that see more widely what a quicker one sees, and all cases of families of slow ones.
 """
 
 import sys
@@ -16,7 +16,7 @@ ALL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
 def main() -> int:
     _setup.ready("test")
     given = sys.argv[1:]
-    return _setup.run("-m", "pytest", *([*ALL, *given] if given in ([], ["--thorough"]) else given), folder=_setup.ROOT)
+    return _setup.run("-m", "pytest", *(ALL if all(one.startswith("-") for one in given) else ()), *given, folder=_setup.ROOT)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import zlib
 from copy import copy
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import ceil
 from os import PathLike
 
@@ -40,6 +40,11 @@ ELSEWHERE = 0.1
 """A place to come to rest at that moves by more than this [m] is another, for which nobody stops yet."""
 
 
+@cache
+def _shipped() -> Locomotion:
+    return Locomotion(Library.load(DEFAULT_LIBRARY))
+
+
 class Locomotion(Controller):
     """Walks, turns, strafes, runs and stops by blending a library's primitives.
 
@@ -68,8 +73,8 @@ class Locomotion(Controller):
 
     @staticmethod
     def load(path: str | PathLike[str] | None = None, settings: Settings = Settings()) -> Locomotion:
-        """The controller over a library file; the shipped one by default. LibraryError if unusable."""
-        return Locomotion(Library.load(path or DEFAULT_LIBRARY), settings)
+        """The controller over a library file; the shipped one by default, which is read once for all. LibraryError if unusable."""
+        return Locomotion(Library.load(path), settings) if path else _shipped().tuned(settings)
 
     def tuned(self, settings: Settings) -> Locomotion:
         """The same controller under other settings; all that was built from the library is shared."""

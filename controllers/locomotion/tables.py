@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +33,7 @@ class Tables(NamedTuple):
     masses: Masses
 
 
+@lru_cache(maxsize=4)  # a tenth of a second, for everybody who walks by the same library
 def tables_of(library: Library, walk: ControlSpace, run: ControlSpace | None) -> Tables:
     """The tables of a library with these control spaces; without runs walking serves at any speed."""
     walking = space_tables(walk, library.family("walk"))

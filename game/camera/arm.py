@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from gambol.controllers.body import damp, wrap
+from gambol.controllers.contract import but
 from gambol.controllers.navigation import free_way
 
 from ..input import Wish
@@ -135,12 +136,12 @@ class Turned:
         if not finite(yaw, pitch):
             return self
         lowest, highest = self._pitches()
-        return replace(self, wanted_yaw=self.wanted_yaw + yaw,
+        return but(self, wanted_yaw=self.wanted_yaw + yaw,
                        wanted_pitch=min(max(self.wanted_pitch + pitch, lowest), highest))
 
     def recentred(self, heading: float) -> Self:
         """The player asks for the view along `heading` [rad]; it turns there the shorter way."""
-        return replace(self, wanted_yaw=self.yaw + float(wrap(heading - self.yaw)), wanted_pitch=0.25)
+        return but(self, wanted_yaw=self.yaw + float(wrap(heading - self.yaw)), wanted_pitch=0.25)
 
     def zoomed(self, factor: float) -> Self:
         """The wheel asks to be `factor` times as far; itself where that means nothing."""
@@ -180,7 +181,7 @@ class Armed(Turned):
     def zoomed(self, factor: float) -> Self:
         """The arm times `factor`, within its limits."""
         s = self.settings
-        return replace(self, distance=min(max(self.distance * factor, s.nearest), s.farthest))
+        return but(self, distance=min(max(self.distance * factor, s.nearest), s.farthest))
 
     def view(self) -> Camera:
         """What to draw with: along the arm, too, where props have pushed the eye onto what it looks at."""
@@ -220,4 +221,4 @@ class Armed(Turned):
             eye = eye + min(nearest * (1.0 - (arm / nearest) ** 2), free_way(before, up, props, MARGIN)[0]) * up[0]
         if not clear or arm < nearest or eye[1] < FLOOR:
             eye = outside(beside(above_floor(eye), ground), props)
-        return replace(self, eye=eye, arm=arm)
+        return but(self, eye=eye, arm=arm)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
 import numpy as np
 
 from gambol.controllers.body import damp, settle, wrap
+from gambol.controllers.contract import but
 
 from ..input import Wish
 from ..scene import Prop
@@ -58,11 +59,11 @@ class Follow(Armed):
     def turned(self, yaw: float, pitch: float = 0.0) -> Self:
         """The player turns the camera by angles [rad]: yaw to the left, pitch upwards."""
         turned = super().turned(yaw, pitch)
-        return self if turned is self else replace(turned, still=0.0)
+        return self if turned is self else but(turned, still=0.0)
 
     def recentred(self, heading: float) -> Self:
         """The player asks for the view from behind `heading` [rad]."""
-        return replace(super().recentred(heading), still=10.0)
+        return but(super().recentred(heading), still=10.0)
 
     def aimed(self, heading: float | None, dt: float) -> Self:
         """The camera a little out of the line of a jump along `heading` [rad]; back behind where nobody aims at one."""
@@ -78,7 +79,7 @@ class Follow(Armed):
     def _beside(self, wanted: float, halflife: float, dt: float) -> Self:
         """The camera as it swings to `wanted` [rad] beside a jump."""
         left, swings = settle(np.array(self.aside - wanted), np.array(self.swings), halflife, dt)
-        return replace(self, aside=wanted + float(left), swings=float(swings))
+        return but(self, aside=wanted + float(left), swings=float(swings))
 
     def _looks(self) -> tuple[float, float]:
         return self.yaw + self.aside, min(self.pitch + OVER * min(abs(self.aside) / BESIDE, 1.0), self.settings.highest)
@@ -100,6 +101,6 @@ class Follow(Armed):
             # strongest for a walker who crosses the view; one who comes towards it stays in front
             pull = speed * abs(math.sin(error))
             wanted = float(damp(wanted, wanted + error, s.swing / max(pull, 1e-6), dt))
-        moved = replace(told, focus=focus, ahead=ahead, slack=slack, target=focus + ahead + slack,
+        moved = but(told, focus=focus, ahead=ahead, slack=slack, target=focus + ahead + slack,
                         wanted_yaw=wanted, still=told.still + dt, **told._swung(dt))
         return moved._reached(ground, dt, props, clear=float(slack @ slack) < 0.01, velocity=velocity)

@@ -51,7 +51,7 @@ class Script:
     def step(self, state: CharacterState, dt: float) -> tuple[Script, Intent]:
         """The script `dt` seconds later, what it asks of a character in `state` meanwhile, and what strikes him."""
         hits = [strike for number, strike in self.strikes if number == self.made]
-        script, intent = replace(self, made=self.made + 1), Intent()
+        script, intent = but(self, made=self.made + 1), Intent()
         while not script.done and script.now.over(script.moves[script.index], state, dt):
             script = script._next(state)
         if not script.done:
@@ -59,7 +59,7 @@ class Script:
             if intent.leap is not None and not _goes_on(script.moves[script.index + 1:]):
                 intent = but(intent, leap=replace(intent.leap, stays=True))
             told = now.stuck(dt) and script.moves[script.index].jump is None  # else it is told as the jump is given up
-            script = replace(script, now=now, refused=(*script.refused, script.stands) if told else script.refused)
+            script = but(script, now=now, refused=(*script.refused, script.stands) if told else script.refused)
         return script, but(intent, strike=reduce(both, hits)) if hits else intent
 
     @property
@@ -98,18 +98,18 @@ class Script:
                 x, z = in_world(state.ground, intent.velocity)
                 brakes = RunUp(0, before(controller, state, (float(x), float(z)), around))
                 known = known._replace(halts=brakes.halt is not None)
-                return replace(self, now=replace(self.now, aside=known)), brakes.heeded(state, waiting(state, intent))
+                return but(self, now=but(self.now, aside=known)), brakes.heeded(state, waiting(state, intent))
             if known.waits:
-                return replace(self, now=replace(self.now, aside=known)), waiting(state, intent)
+                return but(self, now=but(self.now, aside=known)), waiting(state, intent)
         run_up = self.now.run_up.step(controller, state, lambda: self._onward(intent, dt), around, dt, move.jump.place)
-        return replace(self, now=replace(self.now, run_up=run_up, aside=known)), run_up.heeded(state, intent)
+        return but(self, now=but(self.now, run_up=run_up, aside=known)), run_up.heeded(state, intent)
 
     def _rests(self, controller: Any, state: CharacterState, around: Sequence[Any], halt: Sequence[float] | None, tried: tuple[Place, ...]) -> Script:
         """The same of who begins to think of where he can leap from, as he comes to rest. halt: x, z [m] there; None: as soon as he can. tried: where he could not."""
         jump = self.moves[self.index].jump
         assert jump is not None and jump.place is not None  # or he would not come to rest for it
         leap = Leap(np.asarray(jump.place, float), jump.airtime, heading=jump.heading, on=jump.on)
-        return replace(self, now=replace(self.now, stand=stand_for(controller, state, leap, around, halt, tried)))
+        return but(self, now=but(self.now, stand=stand_for(controller, state, leap, around, halt, tried)))
 
     def _rested(self, controller: Any, state: CharacterState, around: Sequence[Any], dt: float) -> Script:
         """The same of who goes to where he can leap from, as soon as he knows and is slow enough, and leaps from there as who turns to a place aside does."""
@@ -120,8 +120,8 @@ class Script:
             return self._rests(controller, state, around, (x, z), (*stand.tried, (x, z, heading)))._rested(controller, state, around, dt)
         after = stand.after(state, dt)
         if after.goes and not stand.goes:
-            now = replace(now, asked=0, aside=STOPS, turns=True, run_up=RunUp())
-        return replace(self, now=replace(now, stand=after))
+            now = but(now, asked=0, aside=STOPS, turns=True, run_up=RunUp())
+        return but(self, now=but(now, stand=after))
 
     def _thinks(self, controller: Any, state: CharacterState, intent: Intent, around: Sequence[Any], pace: float, dt: float) -> Known:
         """What is known of who begins to turn to a place aside, and to think of how to leap to it, and goes so fast [m/s]."""
@@ -136,7 +136,7 @@ class Script:
 
     def paced(self, pace: float) -> Script:
         """The same of one who goes so fast [m/s] to a place aside."""
-        return replace(self, now=replace(self.now, aside=Known(pace, 0)))
+        return but(self, now=but(self.now, aside=Known(pace, 0)))
 
     def _onward(self, intent: Intent, dt: float) -> Asks:
         """What it asks from here on, first an intent."""
@@ -174,7 +174,7 @@ class Script:
         if _hops(move) and not self.now.jumped:  # nor are those made that go off from its landing
             while index < len(self.moves) and _hops(self.moves[index]):
                 index += 1
-        return replace(self, index=index, refused=refused, now=Making(hopped=self.now.hops if self.now.jumped else None))
+        return but(self, index=index, refused=refused, now=Making(hopped=self.now.hops if self.now.jumped else None))
 
 
 def _before(state: CharacterState, place: Sequence[float]) -> bool:

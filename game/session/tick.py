@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gambol.controllers.contract import CharacterState, Intent, Leap
+from gambol.controllers.contract import CharacterState, Intent, Leap, but
 from gambol.controllers.navigation import in_world, slide
 from gambol.controllers.navigation.thinking import Thought
 
@@ -49,21 +49,21 @@ def advance(moment: SessionState, wishes: Sequence[Wish], past: Sequence[Session
         raise ValueError(f"{len(moment.players)} players need as many wishes, got {len(wishes)}")
     number, stepped, back = moment.number + 1, False, backward(wishes, past)
     if back:  # the world starts from there at once, however slowly it goes
-        moment = replace(past[-back], paused=False, slow=moment.slow, phase=moment.slow - 1)
+        moment = but(past[-back], paused=False, slow=moment.slow, phase=moment.slow - 1)
     for who, wish in enumerate(wishes[:len(moment.players)]):
         for action in wish.pressed:
             moment = done(moment, who, action)
             stepped = stepped or action == "step"
     wishes = tuple(wishes) + (Wish(),) * (len(moment.players) - len(wishes))  # for one who has just joined
-    moment = replace(moment, number=number,
-                     players=tuple(replace(player, last=player.camera) for player in moment.players))
+    moment = but(moment, number=number,
+                     players=tuple(but(player, last=player.camera) for player in moment.players))
     if moment.paused:
         moment = _stepped(moment, wishes) if stepped else moment
     elif moment.phase + 1 < moment.slow:
-        moment = replace(moment, phase=moment.phase + 1)
+        moment = but(moment, phase=moment.phase + 1)
     else:
         moment = _stepped(moment, wishes)
-    return replace(moment, players=tuple(_filmed(moment, who, wish, stepped) for who, wish in zip(
+    return but(moment, players=tuple(_filmed(moment, who, wish, stepped) for who, wish in zip(
         range(len(moment.players)), wishes)))
 
 
@@ -76,7 +76,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
             wish = Wish()
         jump = jump_of(character.controller)
         stands = state if jump is None else landing(jump, state)  # in the air one aims from where one will land
-        held = replace(wish, strafe=wish.strafe or player.pilot.locked)
+        held = but(wish, strafe=wish.strafe or player.pilot.locked)
         back = _back(player, character, stands, moment.after.props)
         farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
         even = (held.jump or player.aim.wants) and even_ahead(state, moment.after.props)
@@ -84,26 +84,26 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         ahead = None if not held.jump or player.aim.wants else (onto if held_up else at_hand)(state, in_view(held.move, player.camera.yaw), moment.after.props)
         aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even, state, ahead) if jump is not None else player.aim
         if aim.stands:
-            wish = replace(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
+            wish = but(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
         camera = player.camera.turned(command.swing * DT) if command.swing else player.camera
         goal = None if math.hypot(*wish.move) > 0.0 or wish.turn or aim.stands or wish.jump else player.goal  # hands take over at once
-        players.append(replace(player, pilot=pilot, camera=camera, aim=aim, goal=goal, pushed=False))
+        players.append(but(player, pilot=pilot, camera=camera, aim=aim, goal=goal, pushed=False))
         props = moment.after.props
         facing = aim.facing(stands, props, back is not None)
-        command = replace(command, facing=command.facing if facing is None else facing)
+        command = but(command, facing=command.facing if facing is None else facing)
         x, z = in_world(state.ground, state.velocity)
         if aim.takes_off and (aim.rests or command.velocity[0] * x + command.velocity[1] * z < BACK * math.hypot(*command.velocity) * math.hypot(x, z)):  # else he would brake until no foot sends him to the ring
-            command = replace(command, velocity=(float(x), float(z)))
+            command = but(command, velocity=(float(x), float(z)))
         run_up = _run_up(player, character, command, aim, props)
         if run_up is None:
             run_up, command = _led(character, command, props)
         known = run_up or RunUp()
-        players[-1] = replace(players[-1], run_up=known)
+        players[-1] = but(players[-1], run_up=known)
         # how long it can be in the air is not asked before somebody aims: on a first start that is still being compiled
         leap, ready = (None, None) if jump is None or not aim.wants or back is not None else (ask(stands, props, -float(jump.gravity[1]), jump.longest, jump.about) for ask in (aim.asked, aim.readied))
-        command = command if known.leap is None else replace(command, velocity=known.velocity)
-        command = command if back is None or not aim.stands else replace(command, velocity=back)
+        command = command if known.leap is None else but(command, velocity=known.velocity)
+        command = command if back is None or not aim.stands else but(command, velocity=back)
         intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,
                          aim=known.leap or (ready if known.thought is None else Leap(ring(state, props))),
                          strike=push(player.camera.yaw, wish) if player.pushed else None)
@@ -113,7 +113,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
     held, turns = (None, None) if moment.comparison is None else (moment.comparison.goals, moment.comparison.turns)
     intents += [Intent() if one.follows is None else Intent(points=held, turns=turns) for one in moment.after.characters[len(intents):]]
     world, intents = polite(moment, intents)
-    return replace(moment, before=moment.after, after=world.step(intents), players=tuple(players), phase=0, passers=passers)
+    return but(moment, before=moment.after, after=world.step(intents), players=tuple(players), phase=0, passers=passers)
 
 
 def _back(player: Player, character: Character, stands: CharacterState, props: Sequence[Prop]) -> tuple[float, float] | None:
@@ -156,7 +156,7 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
     if not released and not runs:
         return RunUp(0, halt)
     if known.free != 0 and same:
-        return replace(known, free=-1, halt=halt, leap=None)
+        return but(known, free=-1, halt=halt, leap=None)
     # what comes of it is thought of once, and only where something is ahead
     gravity, longest, most = -float(jump.gravity[1]), jump.longest, round(aim.waiting / DT)
 
@@ -170,8 +170,8 @@ def _run_up(player: Player, character: Character, command: Command, aim: Aim, pr
         if released and (number := leaps(controller, later, asks, props, DT, most - since, ask)[0]):
             return RunUp(number + since)
         found = last_chance(controller, later, velocity, asks, props, DT, ask) if runs else None
-        return RunUp(-1) if found is None else replace(found, free=found.free + since)
-    return replace(brakes, thought=Thought(think, DT)).known(near(WAITED, 0.0), halt)
+        return RunUp(-1) if found is None else but(found, free=found.free + since)
+    return but(brakes, thought=Thought(think, DT)).known(near(WAITED, 0.0), halt)
 
 
 def _led(character: Character, command: Command, props: Sequence[Prop]) -> tuple[RunUp | None, Command]:
@@ -179,7 +179,7 @@ def _led(character: Character, command: Command, props: Sequence[Prop]) -> tuple
     state, controller = character.state, character.controller
     velocity = tuple(slide(state.ground[:2], command.velocity, float(state.floor), props, agility(controller)))
     halt = None if velocity == command.velocity else headlong(controller, state, command.velocity, props)
-    return (None, replace(command, velocity=velocity)) if halt is None else (RunUp(0, halt), command)
+    return (None, but(command, velocity=velocity)) if halt is None else (RunUp(0, halt), command)
 
 
 def refused(before: SessionState, after: SessionState, seen: Sequence[Preview | None] = ()) -> tuple[str, ...]:
@@ -200,7 +200,7 @@ def _filmed(moment: SessionState, who: int, wish: Wish, stepped: bool) -> Player
     still = moment.paused and not stepped
     velocity = np.zeros(2) if still else in_world(new.ground, new.velocity) / moment.slow
     player = moment.players[who]
-    return replace(player, camera=player.camera.aimed(player.aim.looked, DT).step(
+    return but(player, camera=player.camera.aimed(player.aim.looked, DT).step(
         ground_between(old, new, part), velocity, wish, DT, moment.after.props,
         first.level + part * (second.level - first.level)))
 

@@ -105,7 +105,7 @@ class Character:
             sighting = watches.sighting(*there, number)
         made = self.step(Intent(sighting=sighting), number)
         told = joint_errors(made.joints[0], there[0] + watches.beside)
-        return replace(made, intent=Intent(), told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
+        return but(made, intent=Intent(), told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
 
     def after(self, performers: Mapping[str, Character], intent: Intent, number: int) -> Character:
         """One step on of a follower. performers: who has made that step, by name."""
@@ -117,12 +117,12 @@ class Character:
         if performer is not None:
             there = performer.joints
             seen, turns, truth = follows.seen(*there, number / RATE), follows.turns(there[1], number / RATE), there[0]
-            old = replace(self, state=carried(follows, self.state, truth, intent.around))
+            old = but(self, state=carried(follows, self.state, truth, intent.around))
         if seen is None:
             return self.step(intent, number)
         made = old.step(replace(intent, velocity=towards(self.state, seen), points=seen, turns=turns), number)
         told = errors(follows, made.joints, truth, seen)
-        return replace(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
+        return but(made, told=np.concatenate([self.told[-(KEPT - 1):], told[None]]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +155,7 @@ class World:
         performers = {one.name: one for one in made if one is not None}
         made = [old.tracked(performers, number) if new is None and old.watches else new for new, old in zip(made, self.characters)]
         performers = {one.name: one for one in made if one is not None}
-        return replace(self, number=number, characters=tuple(
+        return but(self, number=number, characters=tuple(
             new or old.after(performers, intent, number)
             for new, old, intent in zip(made, self.characters, intents)))
 
@@ -194,8 +194,8 @@ class FixedStep:
         # a hair of slack, so that frames of exactly one step never skip a beat by rounding
         steps = int(owed / DT + 1e-6)
         if steps > self.cap:
-            return self.cap, replace(self, owed=0.0, dropped=self.dropped + owed - self.cap * DT)
-        return steps, replace(self, owed=owed - steps * DT)
+            return self.cap, but(self, owed=0.0, dropped=self.dropped + owed - self.cap * DT)
+        return steps, but(self, owed=owed - steps * DT)
 
     @property
     def alpha(self) -> float:

@@ -54,7 +54,7 @@ def test_hands_jump_and_the_same_hands_again_to_the_bit(somebody):
     assert ends[0].floor == 0.0 and np.isfinite(ends[0].pose.root).all()
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("ticks", [55, 69])
 @pytest.mark.parametrize("turn", [0.0, 1.0])
 def test_who_taps_it_in_the_midst_of_a_turn_sets_his_feet_is_told_so_and_leaps(somebody, ticks, turn):
@@ -245,7 +245,7 @@ def test_who_holds_it_until_the_ring_stops_leaps_as_far_as_he_can(somebody, move
     assert far > 0.85 * reach(np.arctan2(-move[0], move[1]) if strafe else 0.0)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("high", "away"), [(0.3, 0.6), (0.3, 1.0), (0.4, 0.8), (0.5, 0.6)])
 @pytest.mark.parametrize("hold", [0.9, 1.4, 2.0])
 def test_who_pushes_the_ring_far_onto_a_box_lands_on_it(somebody, high, away, hold):

@@ -217,6 +217,7 @@ def test_standing_in_a_corner_is_still():
     assert np.ptp(eyes, axis=0).max() < 1e-3 and np.linalg.norm(camera.eye - camera.target) > 0.5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("high", [0.6, 1.0, 2.4])
 def test_who_walks_up_to_a_box_is_seen_from_where_he_was(high):
     """From beside, along its face: the eye went overhead, and into his belly."""

@@ -251,6 +251,7 @@ main()
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(os.name == "nt", reason="no signals of this kind there")
 def test_a_program_that_hears_a_stream_keeps_it_when_it_is_ended_from_outside(motion, tmp_path):
     """By its own clock, however slow; whoever performs waits for nothing but what it says."""

@@ -43,6 +43,7 @@ def played(tmp_path, text):
             return act, np.array(trails)
 
 
+@pytest.mark.thorough
 def test_those_who_go_to_goals_avoid_each_other_and_arrive(tmp_path):
     act, trails = played(tmp_path, SCENARIO)
     places = trails[:, :, :2]

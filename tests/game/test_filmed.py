@@ -141,6 +141,7 @@ def test_broken_footage_is_told_before_anything_is_played_and_lost_frames_after_
     assert len(Filmed.load(shots, Glide(), start=Path(shots / "motion.bvh"), masks=True).poses) == 2
 
 
+@pytest.mark.thorough
 def test_a_log_in_which_somebody_is_tracked_plays_again_to_the_bit(tmp_path, walker):  # noqa: F811
     """Brought by a key, the penalty taken off and on: cameras see the same, and the tracker makes the same of it."""
     pressed = {3: "track", 12: "penalty", 20: "penalty"}

@@ -277,7 +277,7 @@ def pressed(who, things, far, ahead, run=0.9, floor=0.0, steps=420):
     return states, known
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("things, floor, far", [((box(5.0, 0.33),), 0.0, 5.0), ((box(-3.0, 1.0, 8.0), box(7.0, 1.0)), 1.0, 5.0), ((box(5.0, 1.8),), 0.0, 5.0)])
 @pytest.mark.parametrize("run", [0.0, 0.9])
 def test_hands_that_go_straight_at_what_is_ahead_come_to_rest_before_it_and_are_not_led_aside(library, things, floor, far, run):

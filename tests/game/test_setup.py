@@ -47,6 +47,15 @@ def test_it_installs_once_and_again_when_the_declaration_changes(calls, monkeypa
     assert len(calls) == 3 and calls[2].endswith(".[test]")
 
 
+@pytest.mark.parametrize(("given", "side_by_side"), [((), True), (("--thorough",), True), (("--durations=20", "-x"), True),
+                                                     (("tests/body",), False), (("-k", "walls"), False), (("-x", "tests/body"), False)])
+def test_all_tests_run_side_by_side_whatever_options_are_given_and_those_that_are_named_do_not(calls, monkeypatch, given, side_by_side):
+    _setup.ready("test")
+    monkeypatch.setattr(sys, "argv", ["test.py", *given])
+    assert runpy.run_path(str(ROOT / "scripts" / "test.py"))["main"]() == 0
+    assert calls[-1].endswith(" ".join(given)) and (" -n auto " in f"{calls[-1]} ") == side_by_side
+
+
 def test_a_failed_installation_is_tried_again(calls, monkeypatch):
     monkeypatch.setattr(_setup.subprocess, "call", lambda *a, **k: 1)
     with pytest.raises(SystemExit, match="network"):

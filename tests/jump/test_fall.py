@@ -263,7 +263,7 @@ def test_soles_come_down_in_no_riser(jump, standing, x, z, heading, high):
 LEAVES = {"backward": (np.pi, (-0.5, 0.0, 0.0)), "aside": (-0.5 * np.pi, (0.0, 0.0, 0.5)), "slowly ahead": (0.0, (0.4, 0.0, 0.0)), "turning": (0.0, (0.5, 1.2, 0.0))}
 
 
-@pytest.mark.few(4)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("high", (0.5, 0.8, 1.2))
 @pytest.mark.parametrize("name", LEAVES)
 def test_who_steps_off_an_edge_lands_clear_of_it_however_he_faces(jump, locomotion, name, high):

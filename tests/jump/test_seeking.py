@@ -65,7 +65,7 @@ def someone():
     return Supervisor({"locomotion": Locomotion.load(), "jump": Jump()})
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("place, things", [((0.0, 0.0, 5.0), ()), ((0.0, 0.0, 1.4), (HIGH,)), ((0.0, 0.0, 1.3), (LOW,))], ids=["far", "refused", "leapt"])
 @pytest.mark.parametrize("crouches", [False, True])
 def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someone, monkeypatch, place, things, crouches):

@@ -35,6 +35,7 @@ def deepest(jump, made, around):
     return max(0.0, *(-gap(points.reshape(-1, 3), thing).min() for thing in around))
 
 
+@pytest.mark.few(3)
 @pytest.mark.parametrize(("far", "up", "thing"), [
     (1.0, 0.0, Box((0.0, 0.1, 0.5), (2.0, 0.2, 0.2))), (1.0, 0.0, Box((0.0, 0.15, 0.6), (2.0, 0.3, 0.1))),
     (0.9, 0.3, Box((0.0, 0.15, 1.65), (3.0, 0.3, 2.0))), (0.7, 0.45, Box((0.0, 0.225, 1.45), (3.0, 0.45, 2.0))),

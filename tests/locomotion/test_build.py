@@ -37,7 +37,7 @@ def cycles_of(clip, family):
     return [c for c in cut(track(clip), family) if c.start > 2.5]
 
 
-@pytest.mark.few(6)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("name", [*WALKS, *RUNS])
 def test_a_played_gait_is_cut_into_its_own_cycles(recorded, name):
     """Velocity and period come back, told from the poses alone; the ends of a cycle meet."""
@@ -104,6 +104,7 @@ def test_mirroring_twice_changes_nothing(recorded, name, family):
         assert twice.period == cycle.period
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name, family", (("forward", "walk"), ("left", "walk"), ("diagonal left", "walk"), ("run left", "run")))
 def test_a_mirrored_cycle_is_a_cycle_of_the_mirrored_clip(recorded, name, family):
     """Mirrored before cutting or after, the same: pose by pose, at the same phases."""

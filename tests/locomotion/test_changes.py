@@ -139,7 +139,7 @@ def test_agility_is_how_soon_and_how_hard(library):
     assert times[0] > times[1] > times[2]
 
 
-@pytest.mark.few(5)
+@pytest.mark.few(3)
 @pytest.mark.parametrize("speed", (0.1, 0.3, 1.0, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.2, 2.6, 3.5, 4.3))
 def test_every_speed_is_met(locomotion, speed):
     """Between the fastest walk and the slowest run, too, where nothing was recorded."""

@@ -257,6 +257,15 @@ def test_settings_that_no_body_moves_by_are_refused(name, value):
         Locomotion.load(settings=Settings()._replace(**{name: value}))
 
 
+def test_the_shipped_library_is_read_once_for_all_who_walk_by_it_whatever_their_settings(tmp_path):
+    one, other = Locomotion.load(), Locomotion.load(settings=Settings(agility=2.0))
+    assert one is not other and one.library is other.library and one.tables is other.tables
+    assert one.settings == Settings() and other.settings.agility == 2.0
+    one.library.save(tmp_path / "own.npz")
+    first, again = (Locomotion.load(tmp_path / "own.npz") for _ in range(2))
+    assert first.library is not again.library, "a file of one's own may have changed"
+
+
 def test_wishes_for_another_number_of_bodies_are_refused_with_both_shapes(locomotion):
     with pytest.raises(ValueError, match=r"shape \(7, 3\) for bodies that take \(10, 3\)"):
         locomotion.step(locomotion.start(np.zeros((10, 3))), Intent(np.zeros((7, 3))), 1 / 60)

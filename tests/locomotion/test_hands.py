@@ -65,7 +65,7 @@ def test_hips_do_not_jerk_as_both_feet_come_to_stand(locomotion, before):
         assert jerk[t - 2:t + 3, n].max() < 0.25
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("before", "then"), [((1.3, 0, 0), None), ((1.8, 0, 0), None), ((2.4, -1.8, 0), None), ((2.4, 1.2, 0), (1.3, 0.5, 0)),
                                               ((1.0, 0, 0), (1.0, 2.4, 0)), ((1.3, 0, 0), (1.3, 2.4, 0))])
 def test_who_stops_ends_over_his_feet(locomotion, before, then):

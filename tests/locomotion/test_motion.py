@@ -82,7 +82,7 @@ def test_too_much_is_done_as_fast_as_possible_on_the_same_path(locomotion):
 def test_a_runner_is_never_flung_forward(locomotion):
     """However hard one turns or side-steps, a run is as fast as asked, from the slowest run to the fastest."""
     rng, slowest = np.random.default_rng(7), 2.3
-    wish = rng.uniform([locomotion.settings.run_above + 0.01, -3, -1.2], [5, 3, 1.2], (40, 3))
+    wish = rng.uniform([locomotion.settings.run_above + 0.01, -3, -1.2], [5, 3, 1.2], (20, 3))
     wish[:3] = (2.2, 0, 1.0), (2.0, 3.0, 0), (3.0, 0.5, 0.2)
     found = mean_velocity(play(locomotion, hold(9, *wish)).ground[240:])
     assert np.all(found[:, 0] < np.maximum(wish[:, 0], slowest) + 0.2)
@@ -114,7 +114,7 @@ def test_it_starts_within_half_a_second(locomotion):
     assert np.all(np.linalg.norm(before.velocity, axis=-1) < 1e-2)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("seconds", np.linspace(2.0, 3.0, 8).round(2))
 def test_it_stops_and_settles_soon(library, seconds):
     """And then stands still, if nobody idles: from all ways of walking, released at all moments of the gait, within 2.3 s; a runner has 0.3 s more."""

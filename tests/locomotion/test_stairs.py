@@ -36,7 +36,7 @@ def finds_the_treads(locomotion, rise, tread, height, speed):
     assert found.jerk < 80e3, "no foot pops out of a step"
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rise, tread, height, speed", ((0.17, 0.25, 1.74, 0.7), (0.17, 0.29, 1.2, 0.8), (0.17, 0.29, 2.1, 0.9), (0.17, 0.29, 1.74, 3.0)))
 def test_feet_find_the_treads_of_stairs(locomotion, rise, tread, height, speed):
     finds_the_treads(locomotion, rise, tread, height, speed)
@@ -113,6 +113,7 @@ def test_who_runs_is_faster_up_and_down_stairs_than_who_walks(locomotion, height
     assert near > 1.4
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("height, rise", ((1.2, 0.25), (1.74, 0.33)))
 def test_nobody_walks_into_what_is_too_high_for_a_step(locomotion, height, rise):
     """They come to a stop before it, as before a wall."""
@@ -157,6 +158,7 @@ def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
     assert turned.all() and longest < 0.5
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rise, tread", ((0.17, 0.30), (0.12, 0.40)))
 def test_who_climbs_backward_has_no_knee_thrown(locomotion, rise, tread):
     """Where a leg that is straight must rise to the next tread at once."""
@@ -171,7 +173,7 @@ def test_who_climbs_backward_has_no_knee_thrown(locomotion, rise, tread):
     assert state.floor > 3.5 * rise and change.max() < 4.5
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rise, tread, height, speed", ((0.20, 0.30, 1.74, 0.8), (0.17, 0.29, 1.74, 1.2), (0.17, 0.25, 1.2, 0.8)))
 def test_feet_rise_to_the_next_tread_but_one_without_a_jolt(locomotion, rise, tread, height, speed):
     """As they leave, before the riser that their toes stand at: they were thrown up by 4 m/s within a frame as the swing began."""

@@ -11,7 +11,7 @@ from gambol.controllers.body import forward_kinematics
 from gambol.controllers.locomotion.short_leg import give_way, nearer_kernel
 from gambol.controllers.navigation import floor_at, steer
 
-COUNT, FPS, CHANGES, WISHES = 120, 60, 30, 6
+COUNT, FPS, CHANGES, WISHES = 60, 60, 30, 6
 """So many people; steps a second; a wish holds for so many steps; so many wishes."""
 STRAIGHT, SNAPS = 0.9975, 0.009
 """Legs are straight that are so long [of what they are at most]; by so much shorter a step later, they snap: a knee by 14° at least."""

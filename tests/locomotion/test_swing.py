@@ -99,6 +99,7 @@ def _on_floor(memory):
     return np.stack([x + c * aside + s * ahead, z - s * aside + c * ahead], -1)
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("turning", [2.0, -2.0])
 def test_both_feet_keep_as_far_apart_whichever_way_one_turns(locomotion, turning):
     """The left foot gave way to where the right one had been a step ago: as the blend and the place of a foot part, in a run that turns, that was 3 cm off."""

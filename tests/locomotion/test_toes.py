@@ -10,7 +10,7 @@ from playing import FPS, hold, play, whims
 
 @pytest.fixture(scope="module")
 def restless(locomotion):
-    return play(locomotion, whims(np.random.default_rng(7), 20.0, 24))
+    return play(locomotion, whims(np.random.default_rng(7), 20.0, 12))
 
 
 def turned(rotations):

@@ -278,6 +278,7 @@ def test_a_turn_runs_on_evenly_as_its_first_foot_leaves(locomotion, speed, side)
     assert paces.max() > 2.0 * paces.min() and np.abs(np.diff(paces) / np.diff(times)).max() < 120.0  # [1/s²]; at once: thousands
 
 
+@pytest.mark.few(1)
 @pytest.mark.parametrize("rate", [60, 144, 240])
 def test_a_turn_that_ends_does_not_stand_still_for_a_step(locomotion, rate):
     """What its last step had left of its time nothing moved in: hips were thrown by 45 m/s² at 144 steps a second."""

@@ -62,7 +62,7 @@ def walked(locomotion, around, speed, seconds):
     return states, points[..., 1] - ground - 0.02
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("name", WAYS)
 def test_it_goes_up_along_and_down(locomotion, name):
     """Feet that stand are on the ground, or a heel or toes over an edge; the body is as high over its feet as ever."""
@@ -104,7 +104,7 @@ def test_feet_across_a_slope_lie_on_it(locomotion, degrees):
         assert whole.sum() > 30 and np.median(off) < 4.0
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(2)
 @pytest.mark.parametrize("degrees", (6, 12, 15))
 @pytest.mark.parametrize("facing", (0.0, 0.8, 0.5 * math.pi, math.pi))
 def test_who_stands_on_a_slope_has_both_heels_down(locomotion, degrees, facing):

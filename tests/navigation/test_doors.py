@@ -60,7 +60,7 @@ def walked(walker, places, goals, seconds, around=(), groups=None):
     return np.array(trails)
 
 
-@pytest.mark.few(1)
+@pytest.mark.thorough
 @pytest.mark.parametrize("shift", [0.0, 0.1, -0.2])
 def test_four_of_each_side_get_through_a_door(walker, shift):
     """Two who come to it together go one behind the other, where they pressed into it side by side for six seconds."""

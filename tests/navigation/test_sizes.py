@@ -90,6 +90,7 @@ def test_the_highest_step_goes_with_the_body(one, other):
     assert small * highest_step(small) <= large * highest_step(large) + 1e-12
 
 
+@pytest.mark.few(2)
 @pytest.mark.parametrize("height, under, round_it", [(0.9, 1.1, False), (2.1, 2.05, True), (2.1, 2.5, False)])
 def test_whoever_fits_under_a_beam_walks_under_it_and_others_round_it(library, height, under, round_it):
     someone = walker(library, height)

@@ -25,7 +25,7 @@ from gambol.controllers.supervisor import Duty
 from gambol.game.world.followers import Follows, carried
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("points", [*SETS, "lwrist,rwrist,Head+0/0.09/0.09"])
 def test_a_clip_that_is_in_the_database_is_followed(known, clip, points):
     controller = build(known, points)

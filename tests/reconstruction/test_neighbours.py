@@ -52,7 +52,7 @@ def test_the_exact_search_is_exact(segments, searches):
         assert np.allclose(found, distances[indices], rtol=1e-4)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_recall(segments, searches, kind):
     """Performed frame after frame, one's own recording forbidden; the hint is handed on."""

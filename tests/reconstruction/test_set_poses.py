@@ -165,7 +165,7 @@ def test_one_pose_is_asked_for_after_the_other(first, ignored, heard):
     source = Wearing(order, said, ignored)
     place, turn = source.places[first], source.turned[first]
     assert stance(CONTROLS, place, turn) == first
-    found = set_poses.worn(source, placed(place, CONTROLS, turns=turn), place, turn, (k / 10 for k in range(3000)), say=said.append)
+    found = set_poses.worn(source, placed(place, CONTROLS, turns=turn), place, turn, (k / 6 for k in range(1800)), say=said.append)
     assert sum(" of 8: " in line for line in said) == 7
     if not heard:
         assert found is None

@@ -55,6 +55,7 @@ def test_a_window_opens_runs_for_thirty_frames_and_closes(display):
     assert "['Resize']" in ran.stdout and "[(320, 180)]" in ran.stdout and "paced True" in ran.stdout, ran.stdout
 
 
+@pytest.mark.few(1)
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux runs without a display server")
 @pytest.mark.parametrize("environment", [{}, {"DISPLAY": ":987"}])
 def test_without_a_display_the_error_says_what_to_do(environment):

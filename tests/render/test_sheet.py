@@ -21,6 +21,7 @@ SHEETS = {"no pad": help_sheet(DEFAULT), "one": help_sheet(DEFAULT, pads=(PUSHED
           "two": help_sheet(DEFAULT, Keyboard(frozenset("W")), (REST, PUSHED), 2)}
 
 
+@pytest.mark.few(8)
 @pytest.mark.parametrize("size", [(640, 360), (1280, 720), (3840, 2160), (720, 1280), (320, 240), (500, 650), (300, 900), (1000, 260)])
 @pytest.mark.parametrize("name", SHEETS)
 def test_every_page_fits_and_no_letter_lies_on_another(name, size):

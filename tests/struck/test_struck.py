@@ -127,7 +127,7 @@ def test_who_walks_goes_on_walking(somebody, impulse):
     assert abs(states[-1].velocity[0] - 1.2) < 0.02 and all(np.isfinite(s.pose.root).all() and np.isfinite(s.pose.rotations).all() for s in states)
 
 
-@pytest.mark.few(3)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("speed", "gained"), [(1.2, (0.2, 0.0)), (1.2, (-0.2, 0.1)), (1.2, (0.0, 0.75)), (1.2, (0.0, -0.6)), (1.2, (0.65, 0.0)),
                                                (3.0, (0.4, 0.0)), (3.0, (-0.75, 0.0)), (3.0, (0.0, 1.1)), (3.0, (0.0, -0.55)), (3.0, (0.0, 1.55)),
                                                (3.0, (0.0, -1.35))])
@@ -185,7 +185,7 @@ def test_who_is_in_the_air_is_struck_once_he_stands(somebody):
     assert state.memory.memory.made.velocities[0][2] == pytest.approx(50.0 / BODY.mass, abs=0.15)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize("way", [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)])
 @pytest.mark.parametrize("wish", [(0.0, 0.0, 0.0), (1.2, 0.0, 0.0)])
 def test_nobody_is_pushed_onto_his_knees(somebody, way, wish):
@@ -226,7 +226,7 @@ def test_who_stumbles_may_be_struck_again(somebody):
     assert again.memory.memory.time == pytest.approx(DT) and gained[2] == pytest.approx(-60.0 / BODY.mass, abs=0.1)
 
 
-@pytest.mark.few(2)
+@pytest.mark.few(1)
 @pytest.mark.parametrize(("physique", "gravity"), [(Physique(25.0, 1.2), 9.81), (Physique(), 1.62), (Physique(110.0, 1.95), 9.81)])
 def test_any_body_anywhere(physique, gravity):
     """A child, somebody on the moon and a giant: nothing below the floor, and they stand again."""
