@@ -137,7 +137,7 @@ class Turned:
             return self
         lowest, highest = self._pitches()
         return but(self, wanted_yaw=self.wanted_yaw + yaw,
-                       wanted_pitch=min(max(self.wanted_pitch + pitch, lowest), highest))
+                   wanted_pitch=min(max(self.wanted_pitch + pitch, lowest), highest))
 
     def recentred(self, heading: float) -> Self:
         """The player asks for the view along `heading` [rad]; it turns there the shorter way."""

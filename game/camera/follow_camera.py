@@ -102,5 +102,5 @@ class Follow(Armed):
             pull = speed * abs(math.sin(error))
             wanted = float(damp(wanted, wanted + error, s.swing / max(pull, 1e-6), dt))
         moved = but(told, focus=focus, ahead=ahead, slack=slack, target=focus + ahead + slack,
-                        wanted_yaw=wanted, still=told.still + dt, **told._swung(dt))
+                    wanted_yaw=wanted, still=told.still + dt, **told._swung(dt))
         return moved._reached(ground, dt, props, clear=float(slack @ slack) < 0.01, velocity=velocity)

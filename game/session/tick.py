@@ -56,7 +56,7 @@ def advance(moment: SessionState, wishes: Sequence[Wish], past: Sequence[Session
             stepped = stepped or action == "step"
     wishes = tuple(wishes) + (Wish(),) * (len(moment.players) - len(wishes))  # for one who has just joined
     moment = but(moment, number=number,
-                     players=tuple(but(player, last=player.camera) for player in moment.players))
+                 players=tuple(but(player, last=player.camera) for player in moment.players))
     if moment.paused:
         moment = _stepped(moment, wishes) if stepped else moment
     elif moment.phase + 1 < moment.slow:

@@ -15,6 +15,8 @@ from gambol.controllers.navigation import gap
 from gambol.controllers.navigation.thinking import steps_of
 from gambol.controllers.person import person
 from gambol.game.input import Jump, Move, RunUp, Script, Wish
+from gambol.game.input import run_up as run_ups
+from gambol.game.input.run_up import last_chance
 from gambol.game.input.straight_ahead import before
 from gambol.game.scene.scene import Box, Pillar
 from gambol.game.session.state import begin
@@ -190,6 +192,30 @@ def test_a_leap_held_at_a_run_goes_off_at_the_last_footfall_and_he_runs_on(libra
     assert not any(s.memory.memory.fault for s in leapt) and states[-1].ground[1] > far + 3.4
     assert min(s.velocity[0] for s in states[first:]) > 1.2
     assert sum(now.active == "jump" and was.active != "jump" for was, now in zip(states, states[1:])) == 1, "the held button means one leap"
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("pace", [2.8, 3.4])
+def test_who_runs_and_is_told_to_jump_up_does_so_once_he_has_come_to_rest(library, pace):
+    """He asked for it for a second, as he still ran, and gave it up."""
+    states, script = led(person(library), (), (Move(2.0, (pace, 0.0, 0.0)), Move(8.0, jump=Jump(airtime=0.45))), 5.5)
+    leapt = next(n for n, state in enumerate(states) if state.active == "jump")
+    assert not script.refused and states[leapt].memory.memory.plan.path.airtime == pytest.approx(0.45)
+
+
+def test_a_leap_that_goes_off_by_itself_is_not_asked_about_for_ever(monkeypatch):
+    """Each place from each footfall cost a second; who asked about all of them knew only once he had come to the obstacle."""
+    asked, looked = [], []
+
+    class Slow(Glide):
+        def found(self, state, intent, ask):
+            looked.append(intent.leap.place)
+            for _ in range(4):
+                ask()
+    footfalls = [run_ups.Footfall(n, None, np.array([0.0, 1.0]), Intent(), np.array([0.0, 0.0, 1.0 + n])) for n in range(10)]
+    monkeypatch.setattr(run_ups, "_footfalls", lambda *given: (footfalls, np.array([0.0, 0.0])))
+    assert last_chance(Slow(), Glide().start(), (0.0, 3.0), lambda state: Intent(), (), DT, lambda: asked.append(1)) is None
+    assert run_ups.MOST <= len(asked) < run_ups.MOST + 5 and looked[0][2] > 9.0, "the last footfall comes first"
 
 
 def test_who_thought_of_his_leap_makes_one_plan_as_it_goes_off(library, monkeypatch):

@@ -95,6 +95,26 @@ def test_no_step_of_who_stands_makes_two_plans_and_it_ends_as_all_at_once(someon
         assert again.refused == then.refused and np.array_equal(again.pose.rotations, then.pose.rotations)
 
 
+def test_no_step_of_who_comes_to_rest_makes_two_plans(someone, monkeypatch):
+    """Before he had set his last foot down he looked at all of them in each step, a dozen at once: a game stood still for half a second, over and over."""
+    state, plans, plan = someone.start(), [], reach.drafted
+    for _ in range(90):
+        state, _ = someone.step(state, Intent(np.array([1.3, 0.0, 0.0])), 1 / 60)
+    while np.hypot(*state.velocity[[0, 2]]) > 0.28:
+        state, _ = someone.step(state, Intent(), 1 / 60)
+    assert not someone.parts["jump"]._stands(someone.active(state)[1])
+    x, z, heading = state.ground
+    there = np.array([x + 1.4 * np.sin(heading), 0.0, z + 1.4 * np.cos(heading)])
+    wall = Box((float(x + 0.75 * np.sin(heading)), 0.3, float(z + 0.75 * np.cos(heading))), (1.0, 0.6, 0.1), float(heading))
+    monkeypatch.setattr(reach, "drafted", lambda *given: plans.append(1) or plan(*given))
+    counts = []
+    for _ in range(40):
+        state, _ = someone.step(state, Intent(leap=Leap(there), around=(wall,)), 1 / 60)
+        counts.append(len(plans))
+        plans.clear()
+    assert max(counts) == 1 and sum(counts) > 3 and state.refused
+
+
 @pytest.mark.few(2)
 @pytest.mark.parametrize("crouches", [False, True])
 @pytest.mark.parametrize("speed", [1e-4, 0.1, 0.5])
