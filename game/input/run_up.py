@@ -37,8 +37,9 @@ THINKS, WAITED = 0.5, 0.5
 """He thinks of his leap so much sooner than he would brake [s]; nearer to what is ahead than this share of how far he looks for that he hurries to know."""
 BRAKES = 6
 """Who brakes already as he thinks of his leap brakes on for so many steps, by when he knows: who let go of that until he knew there is none would come to rest too late."""
-MOST = 18
-"""Of the leap that goes off by itself he asks about so many questions: of 47 that were found as hands ran at things 46 took no more; who asked on, up to a hundred, came there before he knew."""
+MOST = 40
+"""About the leap that goes off by itself he asks so many questions, and one more for each part of one that takes as long as most: of 47 that were found as hands ran at things none took more than 28; who asked
+on, up to a hundred, came there before he knew."""
 LATE, TURNED = 6, 0.35
 """It is asked for so many steps; who turned by more than this [rad] since it was found looks again."""
 
@@ -163,7 +164,7 @@ class Footfall(NamedTuple):
 def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, float], asks: Asks, around: Sequence[Any], dt: float,
                 ask: Callable[[], None] = _silent) -> RunUp | None:
     """The run-up of somebody who goes on with a velocity (2,) [m/s] to the last footfall from which he can leap over what he can't run over, or onto it; None
-    where there is none, or none that is found with `MOST` questions. ask: is called before each question, and once more for each part of one that takes as long as most do."""
+    where there is none, or none that is found with `MOST` questions. ask: is called before each leap that is asked about."""
     footfalls, blocked = _footfalls(controller, state, asks, around, dt)
     if blocked is None:
         return None
@@ -172,11 +173,11 @@ def last_chance(controller: Any, state: CharacterState, velocity: tuple[float, f
     def counts() -> None:
         nonlocal asked
         asked += 1
-        ask()
     for footfall in reversed(footfalls):
         for leap in _beyond(footfall, blocked, float(state.floor), around):
             if asked >= MOST:
                 return None
+            ask()
             counts()
             found = controller.found(footfall.state, but(footfall.intent, leap=leap), counts)
             if found is not None:

@@ -150,10 +150,12 @@ class Answers(Reach):
                                        or steps_over(self.physique, self.start_of(state), state.pose, intent.around, float(state.floor), self.gravity))
 
     def _waits(self, state: CharacterState, leap: Leap, around: Sequence[Any]) -> bool:
-        """Whether it may as well leap in a moment: it crouches, stands, or hardly moves, and pushes off both feet."""
-        if isinstance(state.memory, Jumping):
-            return False
-        return isinstance(state.memory, Crouching) or self._stands(state) or not goes_on(self.placed(state, leap, around)[0])
+        """Whether it may as well leap in a moment: it rests, or hardly moves and pushes off both feet."""
+        return self._rests(state) or not isinstance(state.memory, Jumping) and not goes_on(self.placed(state, leap, around)[0])
+
+    def _rests(self, state: CharacterState) -> bool:
+        """Whether it crouches or stands."""
+        return isinstance(state.memory, Crouching) or not isinstance(state.memory, Jumping) and self._stands(state)
 
     def _sets_feet(self, state: CharacterState) -> bool:
         """Whether it goes, and still has to set its feet before it crouches."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...contract import CharacterState, Intent
 from ..motion import Plan
-from ..reach import Found, How, Onward, Pieces, Refused, Seeking, too_weak, whole
+from ..reach import MOST, Found, How, Onward, Pieces, Refused, Seeking, too_weak, whole
 from .answers import Answers
 
 LEVELS = 0.05
@@ -47,9 +47,12 @@ class Searches(Answers):
         start, floor = self.placed(state, leap, intent.around)
         place = found.place if leap.place is None else found.place + (leap.place - asked)  # which may have moved meanwhile
         found = self.again(found.arc.how, start, place, floor, leap.airtime, intent.around)
-        if found is None:  # he moved meanwhile, or it did
+        made = None if found is None else found.made
+        if made is None and not self._rests(state):  # who moves would be elsewhere once more
+            made, _ = self.attempt(start, place, floor, leap.airtime, intent.around, MOST)
+        if made is None:  # he moved meanwhile, or it did
             raise Refused("", onward=self._seeks(state, intent))
-        return found.made
+        return made
 
     def _seeks(self, state: CharacterState, intent: Intent) -> Onward:
         """The beginning of seeking from a state."""
