@@ -90,7 +90,7 @@ class Making:
             now, intent = now._ask_jump(move, move.jump, state, intent, dt)
             if now.asked and state.refused and state.refused not in MOMENTARY:
                 now = replace(now, why=state.refused)
-        stands = now.path is not None and not now.jumped and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
+        stands = now.path is not None and not now.jumped and _still(state)
         return replace(now, steps=now.steps + 1, stood=now.stood + 1 if stands else 0), intent
 
     @property
@@ -198,8 +198,7 @@ class Making:
         if not runs and self.aimed * dt < jump.aims - 0.5 * dt:
             return replace(self, aimed=self.aimed + 1), replace(intent, aim=leap)
         hops = None if jump.hop is None else (float(place[0]), float(place[2]), float(state.ground[2]) if self.hopped is None else self.hopped[2])
-        stands = now is None and float(np.hypot(state.velocity[0], state.velocity[2])) < STILL
-        return replace(self, asked=self.asked + (runs or stands), hops=hops), replace(intent, leap=leap)
+        return replace(self, asked=self.asked + (runs or now is None and _still(state)), hops=hops), replace(intent, leap=leap)
 
     def _back(self, move: Move, jump: Jump, state: CharacterState, far: float, speed: float, behind: bool) -> bool:
         """Whether somebody who goes so fast [m/s] on a run-up turns back to a place that lies behind, so far away [m], or that no foot sends him to any more who asked for it: where all is even."""
@@ -225,6 +224,11 @@ class Making:
 def _pace(intent: Intent) -> float:
     """How fast [m/s] somebody is asked to go."""
     return math.hypot(intent.velocity[0], intent.velocity[2])
+
+
+def _still(state: CharacterState) -> bool:
+    """Whether somebody stands, or as good as."""
+    return bool(np.hypot(state.velocity[0], state.velocity[2]) < STILL)
 
 
 def pace_of(move: Move) -> float:

@@ -181,8 +181,7 @@ class Reach(Arcs):
             if len(around):
                 there[1] = ground(there)
             return not (yield from self.surveyed(start, there, floor, airtime, around, HEIGHTS[:1]))[1]
-        stands = start.single is None and math.hypot(start.velocity[0], start.velocity[2]) < WALKS
-        for back in SHORT if len(around) and stands and abs(place[1] - floor) > EVEN else ():
+        for back in SHORT if len(around) and not goes_on(start) and abs(place[1] - floor) > EVEN else ():
             way = (place - self.middle(start, floor)) * FLAT
             there = place - back / max(float(np.linalg.norm(way)), 1e-9) * way
             if abs(ground(there) - place[1]) < EVEN:
