@@ -25,6 +25,11 @@ ASIDE = 0.05
 _AROUND = [[0.0, 0.0]] + [[way * far, side * far] for far in np.arange(0.0125, 0.16, 0.0125) for way, side in ((-1, 0), (1, 0), (0, -1), (0, 1)) if way or far <= ASIDE]
 SHIFTS = np.array(_AROUND + [[-far, 0.0] for far in np.arange(0.1625, 0.51, 0.0125)])
 """How much farther or nearer, and how far to its left, a foot comes down where it would not stand well, the nearest first [m]."""
+WIDE = np.array(sorted(([along, left] for along in np.arange(-0.4, 0.41, 0.05) for left in np.arange(-0.4, 0.41, 0.05) if math.hypot(along, left) <= 0.42),
+                      key=lambda shift: math.hypot(*shift)))
+"""The same where it would not stand at all so near, of who goes slower than UNHURRIED: who turns beside an edge."""
+UNHURRIED, BY_ITSELF = 0.5, 0.08
+"""Who goes slower than the first [m/s] sets a foot anywhere about, so far to its own side of the other one [m]."""
 NONE, BALL, HALF, WHOLE = 0, 1, 2, 3
 """How much of a foot stands: nothing that one could stand on; the ball, or else the heel; half of what is behind the ball, too; all."""
 WORTH = np.array([9.0, 0.22, 0.12, 0.0])
@@ -135,6 +140,18 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
         if stands > NONE and far + worse < least and abs(steps_kernel(m, foot, here, there_x - place[0], there_z - place[1])) <= STEP:
             best, left, least, most = shift, beside, far + worse, stands
             out[0], out[1], out[2] = here[0], here[1], here[2]
+    if most == NONE and speed < UNHURRIED:
+        for k in range(WIDE.shape[0]):
+            shift, beside = WIDE[k, 0], WIDE[k, 1]
+            there_x, there_z = x + shift * along_x + beside * along_z, z + shift * along_z - beside * along_x
+            off_x, off_z = there_x - place[0], there_z - place[1]
+            if (1 - 2 * foot) * (c * off_x - s * off_z) < BY_ITSELF:
+                continue
+            stands = under_kernel(m, tops, floor, there_x, there_z, c, s, here)
+            if stands > NONE and abs(steps_kernel(m, foot, here, off_x, off_z)) <= STEP:
+                best, left, most = shift, beside, stands
+                out[0], out[1], out[2] = here[0], here[1], here[2]
+                break
     m.land[foot, 0], m.land[foot, 1] = aside[0] + best * along_x + left * along_z, aside[1] + best * along_z - left * along_x
     if most == NONE:
         under_kernel(m, tops, floor, x, z, c, s, out)

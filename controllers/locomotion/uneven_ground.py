@@ -45,8 +45,9 @@ LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 STROLLS, RUNS = 1.4, 2.2
 """A walker's level rises and sinks with a slope by itself, too, the more the faster he is between these [m/s]: a run that is let go of becomes a walk as fast."""
-LOW = 0.06
-"""A body's level lies no more than this and a quarter of what lies between its feet over the lower one's ground [m]."""
+LOW, CLIMBING = (0.03, 0.1), (0.06, 0.25)
+"""A body's level lies no more than the first [m] and the second share of what lies between its feet over the lower one's ground: its leg must reach there; but higher of who climbs ahead, whose
+lower leg is about to leave: he went up squatting."""
 RISER = 0.06
 """What lies so much higher before or behind a foot is no slope [m]."""
 BETWEEN, SOME = 20, 6
@@ -68,8 +69,9 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     goes_on = min(max(m.velocity[0], 0.0) / GOES_ON, 1.0)
     faster, soon = sooner(m), 1.0 + goes_on * (sooner(m) - 1.0)
     haste = (HASTE[0] + (HASTE[1] + HASTE[2] * m.runner - HASTE[0]) * bent * goes_on) * soon * soon
+    goal_of = np.empty(2)
     for foot in range(2):
-        bears[foot] = m.base[foot]
+        bears[foot] = goal_of[foot] = m.base[foot]
         ball = 2 * foot + 1
         firm = max(m.grip[ball - 1], m.grip[ball]) >= 1.0
         if firm and m.held[foot] == 1:
@@ -106,6 +108,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             continue
         m.held[foot] = 0
         come_down(m, tops, floor, foot, progress, under)
+        goal_of[foot] = under[0]
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         along = _along(m, foot, place)
@@ -134,7 +137,9 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
     low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
     before, rate = m.level, m.level_rate
-    m.middle = min(0.5 * (low + high), low + LOW + 0.25 * (high - low))
+    up = goes_on * _climbs_ahead(m, goal_of, place)
+    most = LOW[0] + up * (CLIMBING[0] - LOW[0]) + (LOW[1] + up * (CLIMBING[1] - LOW[1])) * (high - low)
+    m.middle = min(0.5 * (low + high), low + most)
     climbs = _climbs(m)
     m.level, m.level_rate = spring_kernel(m.level, m.level_rate - climbs, m.middle - m.lower, LEVEL_HALFLIFE / faster, dt)
     m.level, m.level_rate = m.level + climbs * dt, m.level_rate + climbs
@@ -145,6 +150,20 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
         m.raised[k] -= m.level - before
     m.stairs, m.brink = on_stairs(m, tops, floor), edge_ahead(m, tops, floor)
     m.most = 0.0 if m.alert and m.stairs == 0.0 else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto, but runs on no treads that feet can't find
+
+
+@kernel
+def _climbs_ahead(m, goals, place):
+    """Whether who goes ahead climbs: a foot that swings comes down higher than it left, or, both down, the higher one is ahead. goals: (2,) how high feet stand, or will [m]."""
+    higher = 0 if m.base[0] > m.base[1] else 1
+    ball_kernel(m, higher, place)
+    x, z = place[0], place[1]
+    ball_kernel(m, 1 - higher, place)
+    climbs = m.base[higher] > m.base[1 - higher] + SAME and math.sin(m.ground[2]) * (x - place[0]) + math.cos(m.ground[2]) * (z - place[1]) > 0.0
+    for foot in range(2):
+        if abs(goals[foot] - m.left[foot]) > SAME and m.held[foot] == 0:
+            climbs = goals[foot] > m.left[foot]
+    return 1.0 if climbs else 0.0
 
 
 @kernel
