@@ -89,6 +89,9 @@ def _take_hold(m, k, height, speed, dt):
         loose, firm = TAKING if m.row_rate[LABELS_AT + k] > 0.0 else LEAVING[m.family]
         share = min(max((m.row[LABELS_AT + k] - loose) / (firm - loose), 0.0), 1.0)
         strain = min(max((m.rise[k // 2] - STRAINED[0]) / (STRAINED[1] - STRAINED[0]), 0.0), 1.0) if k % 2 else 0.0
+        if not even:  # on stairs who lets go of one foot stands on the other
+            other = 2 * (1 - k // 2)
+            strain *= max(m.grip[other], m.grip[other + 1])
         wanted = share * share * (3.0 - 2.0 * share) * (1.0 - (1.0 - m.grip[2 * (k // 2)]) * strain * strain * (3.0 - 2.0 * strain))
         if m.torn[k // 2]:  # it was let go, until it is well into its swing
             wanted = 0.0
