@@ -45,7 +45,7 @@ LEVEL_HALFLIFE = 0.12
 """A body's level follows its feet with this half-life [s]."""
 STROLLS, RUNS = 1.4, 2.2
 """A walker's level rises and sinks with a slope by itself, too, the more the faster he is between these [m/s]: a run that is let go of becomes a walk as fast."""
-LOW, CLIMBING = (0.03, 0.1), (0.06, 0.25)
+LOW, CLIMBING = (0.02, 0.075), (0.06, 0.25)
 """A body's level lies no more than the first [m] and the second share of what lies between its feet over the lower one's ground: its leg must reach there; but higher of who climbs ahead, whose
 lower leg is about to leave: he went up squatting."""
 RISER = 0.06
@@ -89,7 +89,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
                 if m.aimed[foot] == 0 or math.hypot(x - aim[0], z - aim[1]) > ASTRAY:
                     under_kernel(m, tops, floor, x, z, c, s, under)
                     if under[0] < m.base[1 - foot] - STEP and _upheld(m, tops, floor, 1 - foot, place) and steps_kernel(m, foot, under, x - place[0], z - place[1]) < -STEP:
-                        under[0], under[1], under[2] = m.base[1 - foot], 0.0, 0.0
+                        under[0], under[1], under[2] = aim[2] - floor if m.aimed[foot] == 1 else m.base[1 - foot], 0.0, 0.0
                 else:
                     under[0] = aim[2] - floor + aim[3] * (x - aim[0]) + aim[4] * (z - aim[1])
                     under[1], under[2] = aim[3], aim[4]
@@ -155,11 +155,11 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
 @kernel
 def _climbs_ahead(m, goals, place):
     """Whether who goes ahead climbs: a foot that swings comes down higher than it left, or, both down, the higher one is ahead. goals: (2,) how high feet stand, or will [m]."""
-    higher = 0 if m.base[0] > m.base[1] else 1
+    higher = 0 if m.left[0] > m.left[1] else 1
     ball_kernel(m, higher, place)
     x, z = place[0], place[1]
     ball_kernel(m, 1 - higher, place)
-    climbs = m.base[higher] > m.base[1 - higher] + SAME and math.sin(m.ground[2]) * (x - place[0]) + math.cos(m.ground[2]) * (z - place[1]) > 0.0
+    climbs = m.left[higher] > m.left[1 - higher] + SAME and math.sin(m.ground[2]) * (x - place[0]) + math.cos(m.ground[2]) * (z - place[1]) > 0.0
     for foot in range(2):
         if abs(goals[foot] - m.left[foot]) > SAME and m.held[foot] == 0:
             climbs = goals[foot] > m.left[foot]
