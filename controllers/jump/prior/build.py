@@ -12,7 +12,7 @@ import numpy as np
 
 from ...body import Anatomy, Skeleton
 from ...files import whole
-from .coefficients import FEATURES, Prior, mirrored
+from .coefficients import BETWEEN, ELBOWS, FEATURES, Prior, mirrored
 from .recorded import Recorded, jumps
 
 TAKES = ("cmu/02/02_04.amc", *(f"cmu/16/16_{n:02d}.amc" for n in (1, 2, 3, 5, 6, 9)), "cmu/49/49_02.amc", "cmu/49/49_03.amc",
@@ -48,7 +48,8 @@ def fit(found: Sequence[Recorded]) -> Prior:
     if not both or not runs:
         raise ValueError(f"a prior takes jumps off both feet and off one, got {len(both)} and {len(runs)}")
     features, single = told(both), told(runs)
-    two = regressed(features, np.stack([one.keys for one in both]), weights(both))
+    keys = np.stack([one.keys for one in both])
+    two = as_far(regressed(features, keys, weights(both)), features, keys, weights(both))
     one = np.zeros((FEATURES, *two.shape[1:]))
     one[0] = np.average([run.keys for run in runs], axis=0, weights=weights(runs))
     depth = regressed(features, np.array([one.depth for one in both]), weights(both))
@@ -81,6 +82,16 @@ def regressed(features: np.ndarray, values: np.ndarray, weight: np.ndarray) -> n
     slopes[1:] /= SCALES[:, None]
     slopes[0] -= middle @ slopes[1:]
     return slopes.reshape(FEATURES, *values.shape[1:])
+
+
+def as_far(fitted: np.ndarray, features: np.ndarray, keys: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """The same coefficients (FEATURES, ROWS, COLUMNS) of keys (N, ROWS, COLUMNS), elbows bending as far as in those until they touch down: a mean of people who bend them at different moments bends
+    them less than each of them (global variance: Toda and Tokuda 2007). What the mean jump lacks is added to all, or in jumps at the rim of what was recorded they would bend beyond any body's."""
+    fitted, until = fitted.copy(), slice(3 * BETWEEN)
+    shown, told = (np.average(np.var(values[:, until, ELBOWS], axis=1), axis=0, weights=weight) for values in (keys, np.tensordot(features, fitted, 1)))
+    mean = np.tensordot(np.average(features, axis=0, weights=weight), fitted, 1)[until, ELBOWS]
+    fitted[0, until, ELBOWS] += ((np.sqrt(shown / told) - 1.0) * (mean - mean.mean(0))).T
+    return fitted
 
 
 def save(prior: Prior, path: str | PathLike[str]) -> None:

@@ -30,6 +30,7 @@ LEGS = len(carriage.ANGLES)
 COLUMNS = LEGS + 2 * EACH
 ARMS, AIR = slice(3, LEGS), slice(2 * BETWEEN, 4 * BETWEEN + 1)
 """The columns of the arms; the rows from take-off to the lowest point of the landing."""
+ELBOWS = [carriage.ANGLES.index(side + " elbow") for side in ("left", "right")]
 FEATURES = 4
 """One, airtime [s], distance [m] and pace [m/s] of a standard adult on Earth."""
 DEFAULT = assets.path("library", "jumps.npz")
