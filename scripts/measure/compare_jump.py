@@ -23,7 +23,7 @@ import jump_faults
 from gambol.controllers.body import Clip, Pose, centre_of_mass, contact_points, forward_kinematics, heading_of, log
 from gambol.controllers.contract import CharacterState, Intent, Leap, Unable
 from gambol.controllers.jump import Jump
-from gambol.controllers.jump.prior import TAKES, Prior, Recorded, fit, jumps
+from gambol.controllers.jump.prior import STRIDES, TAKES, Prior, Recorded, fit, jumps
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import calibrate, load, retarget
 
@@ -178,8 +178,8 @@ def strip(path: Path, title: str, jump: Jump, clip: Clip, one: Recorded, made) -
 
 def beside(takes: Sequence[str], plots: Path | None) -> None:
     """Every recorded jump beside ours."""
-    found, fitted = list(recorded(Jump(), takes)), {Path(take).stem for take in TAKES}
-    everything, rows = [one for clip, some in found if clip.name in fitted for one in some], []
+    found, strides, fitted = list(recorded(Jump(), takes)), list(recorded(Jump(), STRIDES)), {Path(take).stem for take in TAKES}
+    everything, rows = [one for clip, some in found if clip.name in fitted for one in some] + [one for _, some in strides for one in some], []
 
     for clip, some in found:
         if not some:

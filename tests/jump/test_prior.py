@@ -78,6 +78,22 @@ def test_elbows_bend_as_far_as_recorded_though_people_bend_them_at_different_mom
     assert np.degrees(np.ptp(hop, axis=0)).min() > 26.0
 
 
+def test_arms_of_short_leaps_off_one_foot_lie_between_those_of_strides_and_of_long_leaps():
+    """They were as in leaps of half a second, level aside, however short a flight was: hands 1.2 m apart. A runner's arms go against his legs: the left one, which leads as he leaves the right foot."""
+    skeleton, apart, behind = Physique().skeleton, [], []
+    hands = [skeleton.index(name) for name in ("LeftHand", "RightHand")]
+    for airtime in (0.22, 0.3, 0.42, 0.55):
+        keys = PRIOR.keys(*[PRIOR.features(0.5 * 9.81 * airtime, 1.2, 3.0, 1.0, True)] * 2, single=1)[2 * BETWEEN:3 * BETWEEN + 1]
+        local = np.tile(np.eye(3), (len(keys), len(skeleton), 1, 1))
+        for row, posed in zip(keys, local):
+            carriage.carry_kernel(np.ascontiguousarray(row[:LEGS]), carriage.joints_of(skeleton), posed)
+        places = forward_kinematics(skeleton, np.zeros((len(keys), 3)), local)[0][:, hands]
+        apart.append(float(np.linalg.norm(places[:, 0] - places[:, 1], axis=-1).mean()))
+        behind.append(float((places[:, 1] - places[:, 0])[:, 2].mean()))
+    assert (np.diff(apart) > 0.1).all() and apart[0] < 0.5 and apart[2] < 0.85 < 1.0 < apart[3]
+    assert min(behind) > 0.08
+
+
 def test_takes_left_out_are_near_what_the_others_say(shared):
     """The rows of the flight, of takes by three people: knees, hips, trunk."""
     body = Physique()

@@ -90,11 +90,9 @@ def features_kernel(speed, far, pace, size, least, most, found):
 
 
 @kernel
-def swings_kernel(airtime, pace, size, least):
-    """How far arms swing in a leap off one foot of an airtime [s] and a pace [m/s], beside recorded ones, which had these features at least (FEATURES,): less in shorter and slower ones, or they would have
-    to be faster."""
-    root = math.sqrt(size)
-    return min(airtime / root / least[1], 1.0) * min(max(pace / root / least[3], 0.0), 1.0)
+def swings_kernel(pace, size, least):
+    """How far arms swing in a leap off one foot of a pace [m/s], beside recorded ones, which had these features at least (FEATURES,): less in slower ones."""
+    return min(max(pace / math.sqrt(size) / least[3], 0.0), 1.0)
 
 
 @lru_cache(maxsize=4)
