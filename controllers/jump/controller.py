@@ -112,7 +112,7 @@ class Jump(Searches, Controller):
         stayed(state.memory.stood, state)
         if isinstance(state.memory, Crouching):
             state = self._released(state, intent)
-        elif state.memory.time > state.memory.plan.take_off:
+        elif intent.leap is None or state.memory.time > state.memory.plan.take_off:  # let go of is a leap also before it leaves the floor
             state = self._followed(state, intent)
         if isinstance(state.memory, Crouching):
             after = crouched(self, state, intent.leap or intent.aim, dt, intent.around)

@@ -63,12 +63,13 @@ class Aim(Aimed):
 
     def step(self, wish: Wish, camera_yaw: float, state: CharacterState, leaving: bool, dt: float, aloft: bool = False, cramped: bool = False,
              farthest: float = math.inf, even: bool = False, now: CharacterState | None = None, ahead: tuple[float, float] | None = None) -> Aim:
-        """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies, and what is asked waits until it lands;
+        """The aim `dt` seconds later. leaving: the body is about to leave the floor. aloft: it flies. What is asked anew meanwhile waits until it lands;
         the state is then that in which it will stand there. cramped: it is too near to what it would leap onto, and goes back first.
         farthest: how far from a standing body the ring may be [m]. even: the floor before it is even and free. now: how it goes until then, where that is another state.
         ahead: where x, z [m] from his feet the ring lies at first of one whom something holds up, see `straight_ahead.onto`."""
-        if leaving or wish.jump and self.spent:
-            return Aim(spent=wish.jump and (self.aiming or self.spent))
+        if wish.jump and self.spent or leaving and not self.follows and (self.aiming or not wish.jump):
+            return Aim(spent=wish.jump)
+        self, aloft = (self if self.follows == leaving else Aim(follows=True) if leaving else replace(self, follows=False)), aloft or leaving
         stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
         x, z = self._there(state)
         tilt = math.hypot(*wish.move)
@@ -131,7 +132,7 @@ class Aim(Aimed):
             offset = (x * shrink, z * shrink)
             place = (float(state.ground[0]) + offset[0], float(state.ground[1]) + offset[1]) if stays else None
             heading = self._turned(wish, offset, camera_yaw, float(state.ground[2]), dt)
-        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, steers=self.steers, course=course_of(state), even=self.even, led=self.led)
+        return Aim(offset, self.held + dt if self.aiming else 0.0, True, 0.0, moving, place, heading, rests=self.rests, tilt=self.tilt, steers=self.steers, course=course_of(state), even=self.even, led=self.led, follows=self.follows)
 
     def _least(self, state: CharacterState, tilt: float) -> float:
         """Faster than this [m/s] a leap goes on the way of one before whom the floor is even, whose stick is tilted so far. Who aims from a stand moves the ring with it, as he

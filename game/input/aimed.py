@@ -70,6 +70,7 @@ class Aimed:
     course: which way [rad] the ring was set of who moves, and in which he lands where he goes along an arc. even: who goes slowly has even floor before him.
     skips: he went slowly enough for that as he let go. stick: where (2,) in the world it was held as the button was let go, nowhere since it came to rest.
     steers: where (2,) in the world it is held now. led: for so long [s] the stick, which led him to what holds him up, pushes a ring that lies ahead already no farther. backs: he found that he would hit what he stands before, and goes back from it.
+    follows: the button was pressed as he was about to leave the floor, for the leap that is to follow.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -89,6 +90,7 @@ class Aimed:
     steers: tuple[float, float] = (0.0, 0.0)
     led: float = 0.0
     backs: bool = False
+    follows: bool = False
 
     def _goes(self, state: CharacterState) -> bool:
         """Whether somebody goes on by a small leap, slowly, aside or backward."""

@@ -81,8 +81,9 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         farthest = math.inf if jump is None or not held.jump else FARTHEST * jump.about()
         even = (held.jump or player.aim.wants) and even_ahead(state, moment.after.props)
         held_up = player.run_up.halt is not None and np.hypot(state.velocity[0], state.velocity[2]) < MOVING
-        ahead = None if not held.jump or player.aim.wants else (onto if held_up else at_hand)(state, in_view(held.move, player.camera.yaw), moment.after.props)
-        aim = player.aim.step(held, player.camera.yaw, stands, leaving(state), DT, aloft(state), back is not None, farthest, even, state, ahead) if jump is not None else player.aim
+        leaves = leaving(state)
+        ahead = None if not held.jump or player.aim.wants or leaves else (onto if held_up else at_hand)(state, in_view(held.move, player.camera.yaw), moment.after.props)
+        aim = player.aim.step(held, player.camera.yaw, stands, leaves, DT, aloft(state), back is not None, farthest, even, state, ahead) if jump is not None else player.aim
         if aim.stands:
             wish = but(wish, move=(0.0, 0.0), look=(0.0, 0.0), turn=0.0)
         pilot, command = player.pilot.command(wish, player.camera.yaw, float(state.ground[2]), DT)
@@ -101,7 +102,7 @@ def _stepped(moment: SessionState, wishes: Sequence[Wish]) -> SessionState:
         known = run_up or RunUp()
         players[-1] = but(players[-1], run_up=known)
         # how long it can be in the air is not asked before somebody aims: on a first start that is still being compiled
-        leap, ready = (None, None) if jump is None or not aim.wants or back is not None else (ask(stands, props, -float(jump.gravity[1]), jump.longest, jump.about) for ask in (aim.asked, aim.readied))
+        leap, ready = (None, None) if jump is None or not aim.wants or leaves or back is not None else (ask(stands, props, -float(jump.gravity[1]), jump.longest, jump.about) for ask in (aim.asked, aim.readied))
         command = command if known.leap is None else but(command, velocity=known.velocity)
         command = command if back is None or not aim.stands else but(command, velocity=back)
         intent = replace(known.heeded(state, command.intent(state, player.steering)), leap=known.off or leap, goal=goal,
@@ -120,7 +121,7 @@ def _back(player: Player, character: Character, stands: CharacterState, props: S
     """With which velocity (2,) [m/s] somebody goes back who aims from a stand at what he is too near to, until he stands; None of everybody else."""
     aim = player.aim
     far = math.hypot(*aim.offset)
-    if not aim.stands or far < NEAR or aloft(character.state):
+    if not aim.stands or far < NEAR or leaving(character.state) or aloft(character.state):
         return None
     x, z = (-GOES_BACK * part / far for part in aim.offset)
     lacks = cramped(character.controller, stands, [float(stands.ground[k]) + aim.offset[k] for k in (0, 1)], props, aim.backs)
@@ -135,7 +136,7 @@ def _back(player: Player, character: Character, stands: CharacterState, props: S
 def _run_up(player: Player, character: Character, command: Command, aim: Aim, props: Sequence[Prop]) -> RunUp | None:
     """What is known of the run-up of somebody who aims at a run, or has let go: goes on as he does if his leap will go off, or until he can just still leap over
     what is ahead, and else comes to rest before it. None of who does neither."""
-    if not (aim.moving and aim.wants):
+    if not (aim.moving and aim.wants) or leaving(character.state):
         return None
     known, state, controller, jump = player.run_up, character.state, character.controller, jump_of(character.controller)
     onward = known.onward(command.velocity)

@@ -5,7 +5,7 @@
 Jumps are found in the takes of ../shared/mocap that the prior is fitted to. Each is planned anew from the very pose and
 motion in which the recorded one began, with its distance, height and airtime, by a prior to which no jump of its take was
 fitted. Printed are the RMS differences in the air of knee, hip and trunk [°] and of where the upper arms point [°]; of the
-whole, how deep they crouch and how they land. Then comes the table of `jump_faults.py`. With --plots, strips of
+whole, how deep they crouch, how far upper arms and elbows turn until touch-down, and how they land. Then comes the table of `jump_faults.py`. With --plots, strips of
 both are drawn.
 """
 
@@ -23,7 +23,7 @@ import jump_faults
 from gambol.controllers.body import Clip, Pose, centre_of_mass, contact_points, forward_kinematics, heading_of, log
 from gambol.controllers.contract import CharacterState, Intent, Leap, Unable
 from gambol.controllers.jump import Jump
-from gambol.controllers.jump.prior import TAKES, Prior, Recorded, fit, jumps
+from gambol.controllers.jump.prior import STRIDES, TAKES, Prior, Recorded, fit, jumps
 from gambol.controllers.locomotion import Locomotion
 from gambol.controllers.mocap import calibrate, load, retarget
 
@@ -34,19 +34,22 @@ JUDGED = (*TAKES, "woody2/wd2_Physics_Jump02.bvh")
 """Ours are judged by these: there are scissors, too, which nothing was fitted to."""
 STANDS = 0.055
 """Points of feet lower than this over the floor stand [m]."""
+SMALL = 0.2, 0.46
+"""Jumps no farther than this [m], and shorter [s], are small ones on the spot."""
 ANGLES = ("knee", "hip", "trunk", "arm")
 
 
 @dataclass(frozen=True, eq=False)
 class Curves:
     """Knee and hip bend [°], mean of both legs, the trunk's lean forward [°], where the upper arms point (T, 2, 3) seen from the
-    chest, and centre of mass (T, 3) [m]."""
+    chest, centre of mass (T, 3) [m], and how far elbows are bent (T, 2) [°]."""
 
     knee: np.ndarray
     hip: np.ndarray
     trunk: np.ndarray
     arms: np.ndarray
     centre: np.ndarray
+    elbows: np.ndarray
 
 
 def curves(jump: Jump, roots: np.ndarray, local: np.ndarray) -> Curves:
@@ -61,7 +64,14 @@ def curves(jump: Jump, roots: np.ndarray, local: np.ndarray) -> Curves:
     chest = turned[:, skeleton.index("Spine2")]
     arms = np.stack([positions[:, skeleton.index(side + "ForeArm")] - positions[:, skeleton.index(side + "Arm")] for side in ("Left", "Right")], 1)
     arms = np.einsum("tji,tsj->tsi", chest, arms / np.linalg.norm(arms, axis=-1, keepdims=True))
-    return Curves(knee, hip, trunk, arms, centre_of_mass(jump.physique.anatomy, positions, turned))
+    elbows = np.stack([np.degrees(np.linalg.norm(log(local[:, skeleton.index(side + "ForeArm")]), axis=-1)) for side in ("Left", "Right")], 1)
+    return Curves(knee, hip, trunk, arms, centre_of_mass(jump.physique.anatomy, positions, turned), elbows)
+
+
+def swings(shown: Curves, until: slice) -> tuple[float, float]:
+    """How far [°] upper arms turn meanwhile, between any two moments, and elbows bend: means of both sides."""
+    arms = np.clip(np.einsum("isk,jsk->sij", shown.arms[until], shown.arms[until]), -1.0, 1.0)
+    return float(np.degrees(np.arccos(arms.min((1, 2)))).mean()), float(np.ptp(shown.elbows[until], axis=0).mean())
 
 
 def recorded(jump: Jump, takes: Sequence[str] = JUDGED) -> Iterator[tuple[Clip, list[Recorded]]]:
@@ -118,6 +128,7 @@ def compare(clip: Clip, one: Recorded, prior: Prior, plots: Path | None, number:
     thin = max(round(1 / (60.0 * clip.frame_time)), 1)
     off, down = round(made.take_off * 120), round(made.touch_down * 120)
     low = down + int(all_ours.centre[down:, 1].argmin())
+    rms |= dict(zip(("arms turn", "elbows bend", "arms turn theirs", "elbows bend theirs"), (*swings(all_ours, slice(0, down)), *swings(theirs, slice(start, last)))))
     rms |= {"knee off": ours.knee[0], "knee off theirs": theirs.knee[first], "trunk landed": all_ours.trunk[low], "trunk landed theirs": theirs.trunk[landed],
             "crouch": all_ours.centre[0, 1] - all_ours.centre[:off, 1].min(), "crouch theirs": one.depth,
             "knee turns": fastest(jump, np.stack([p.rotations for p in whole[:int(120 * min(made.through, made.duration)):2]]), 60.0),
@@ -167,8 +178,8 @@ def strip(path: Path, title: str, jump: Jump, clip: Clip, one: Recorded, made) -
 
 def beside(takes: Sequence[str], plots: Path | None) -> None:
     """Every recorded jump beside ours."""
-    found, fitted = list(recorded(Jump(), takes)), {Path(take).stem for take in TAKES}
-    everything, rows = [one for clip, some in found if clip.name in fitted for one in some], []
+    found, strides, fitted = list(recorded(Jump(), takes)), list(recorded(Jump(), STRIDES)), {Path(take).stem for take in TAKES}
+    everything, rows = [one for clip, some in found if clip.name in fitted for one in some] + [one for _, some in strides for one in some], []
 
     for clip, some in found:
         if not some:
@@ -177,7 +188,7 @@ def beside(takes: Sequence[str], plots: Path | None) -> None:
         prior = fit([one for one in everything if one.clip != clip.name])
         for number, one in enumerate(some):
             rms = compare(clip, one, prior, plots, number)
-            rows += [rms | {"take": clip.name, "feet": 1 if one.single is not None else 2}] if rms else []
+            rows += [rms | {"take": clip.name, "feet": 1 if one.single is not None else 2, "small": one.far < SMALL[0] and one.airtime < SMALL[1]}] if rms else []
     for feet in (2, 1):
         some = [row for row in rows if row["feet"] == feet]
         if some:
@@ -187,6 +198,9 @@ def beside(takes: Sequence[str], plots: Path | None) -> None:
                 f"{np.median([np.median([r[key] for r in some if r['take'] == take]) for take in takes]):.0f}°" for key in ANGLES))
             print("  ours / theirs, median: " + "; ".join(f"{key} {np.median([r[key] for r in some]):.2f} / {np.median([r[key + ' theirs'] for r in some]):.2f}"
                                                           for key in ("knee off", "trunk landed", "crouch", "sinks")))
+            for name, told in (("until touch-down", some), ("small ones on the spot", [row for row in some if row["small"]])):
+                print(f"  {name}, {len(told)}, ours / theirs, median: " + "; ".join(f"{key} by {np.median([r[key] for r in told]):.0f} / {np.median([r[key + ' theirs'] for r in told]):.0f}°"
+                                                                        for key in ("arms turn", "elbows bend")) if told else "", end="\n" if told else "")
             print("  knees turn fastest, ours / theirs, median (worst): " + " / ".join(f"{np.median([r[key] for r in some]):.1f} ({max(r[key] for r in some):.1f})"
                                                                                       for key in ("knee turns", "knee turns theirs")) + " rad/s")
 

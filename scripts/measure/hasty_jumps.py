@@ -2,14 +2,15 @@
 
     python scripts/measure/hasty_jumps.py [--delays 12]
 
-Hands run, let go of the stick or throw it back, and tap the jump so much later; or they walk at a box, or over it to its edge, hold the stick on and tap. Told from what is played: the
-first moment of a leap in which no foot stands.
+Hands run, let go of the stick or throw it back, and tap the jump so much later; or they walk at a box, or over it to its edge, hold the stick on and tap; or they tap twice. Told from what is
+played: the first moment of a leap in which no foot stands, and how often he leaves the floor.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+from dataclasses import replace
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread: what a game has
 import numpy as np
@@ -25,6 +26,8 @@ RUNS, TAPS, LATER = 1.7, 0.1, 3.0
 """So long hands run first, tap, and go on [s]."""
 LATEST = 1.1
 """They tap up to so long after that [s]."""
+TWICE = 1.3
+"""Or the second time up to so long after the first [s]."""
 HIGH = 0.3, 0.45
 """How high the box is [m]."""
 
@@ -48,6 +51,12 @@ def aloft(states: list[CharacterState], since: float) -> float:
     return next((k * DT for k, state in enumerate(later) if state.active == "jump" and not np.any(state.contacts)), np.inf)
 
 
+def leaves(states: list[CharacterState]) -> int:
+    """How often somebody leaves the floor in a leap."""
+    flies = np.array([state.active == "jump" and not np.any(state.contacts) for state in states])
+    return int((np.diff(flies.astype(int)) == 1).sum())
+
+
 def told(name: str, times: list[float], more: str) -> None:
     """Print when leaps went off."""
     found = np.array(times)
@@ -66,6 +75,11 @@ def main() -> None:
             found = [played(who, (), (0.0, 0.0, 0.0, 0.0), ((RUNS, on), (delay, wish), (TAPS, Wish(move=wish.move, run=wish.run, jump=True)), (LATER, wish))) for delay in delays]
             why = sum(len(told_why) for _, told_why in found)
             told(f"{name}, {does}", [aloft(states, RUNS + delay + TAPS) for delay, (states, _) in zip(delays, found)], f"; refused {why}")
+    for name, wish in (("stands", Wish()), ("walks", Wish(move=(0.0, 1.0))), ("runs", Wish(move=(0.0, 1.0), run=1.0))):
+        tap, again = (TAPS, replace(wish, jump=True)), np.linspace(0.05, TWICE, 2 * given.delays)
+        leaps = [leaves(played(who, (), (0.0, 0.0, 0.0, 0.0), ((RUNS, wish), tap, (delay, wish), tap, (LATER, wish)))[0]) for delay in again]
+        fewer = ", ".join(f"{delay:.2f}" for delay, count in zip(again, leaps) if count < 2)
+        print(f"{name}, tapped twice: two leaps {sum(count == 2 for count in leaps)} of {len(leaps)}{f'; fewer {fewer} s after the first' if fewer else ''}")
     on, tap = Wish(move=(0.0, 1.0)), Wish(move=(0.0, 1.0), jump=True)
     for high in HIGH:
         box = Box((0.0, 0.5 * high, 4.0), (4.0, high, 3.0))

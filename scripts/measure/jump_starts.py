@@ -122,13 +122,14 @@ def report_strides(someone: Supervisor, phases: int) -> None:
     """Walks and runs over the ring and on, let go at many moments of the stride."""
     print("Walking or running over the ring: of how many, refused; lands on one foot; least of hips over 0.1 s from before touch-down to 0.6 s "
           "later, over the speed before: median, worst; waited s (median, longest); in the air s, rises cm (medians); knee bent as it lands ° (median, worst); "
-          "hands pulled m/s², the free knee °/s² until 0.4 s later, over 1/30 s (medians; recorded 56 … 100, 6500 … 13000)")
+          "hands pulled m/s², the free knee °/s² until 0.4 s later, over 1/30 s (medians; recorded 56 … 100, 6500 … 13000); hands apart cm in the air, mean and most, "
+          "and the one behind that is beside the leg that leads (medians; recorded leaps 88 … 103, 112 … 137, −5 … 44, strides 35 … 52, 37 … 55, 11 … 24)")
     kept_all, refused_all, all_, legs = [], 0, 0, [someone.skeleton.index(side + "Leg") for side in ("Left", "Right")]
     hands = [someone.skeleton.index(side + "Hand") for side in ("Left", "Right")]
     for speed in SPEEDS:
         wish = np.array([speed, 0.0, 0.0])
         base = led(someone, someone.start(), Intent(wish), 3.5)
-        single, kept, waits, refused, air, knees, pulls = 0, [], [], 0, [], [], []
+        single, kept, waits, refused, air, knees, pulls, arms = 0, [], [], 0, [], [], [], []
         for k in range(phases):
             state = led(someone, base, Intent(wish), (0.75 if speed > WALKS else 1.1) * k / phases)
             leap, made, poses = Aim().step(Wish(jump=True, move=(0.0, 1.0)), 0.0, state, False, 1 / FPS).target(state, (), 9.81), None, []
@@ -145,8 +146,12 @@ def report_strides(someone: Supervisor, phases: int) -> None:
             bent = np.degrees(np.linalg.norm(log(turned[:, legs]), axis=-1))
             down = begun + int(made.touch_down * FPS)
             around, lands = slice(down - 4, down + RUNS_ON), slice(None) if made.path.lands is None else made.path.lands
-            pulls.append((float(np.linalg.norm(pulled(forward_kinematics(someone.skeleton, roots, turned)[0][around, hands]), axis=-1).max()),
+            shown = forward_kinematics(someone.skeleton, roots, turned)[0][:, hands]
+            pulls.append((float(np.linalg.norm(pulled(shown[around]), axis=-1).max()),
                           float(np.abs(pulled(bent[around, 0 if made.path.lands is None else 1 - made.path.lands])).max())))
+            apart = shown[begun + int(made.take_off * FPS) + 1:down, 1] - shown[begun + int(made.take_off * FPS) + 1:down, 0]
+            wide = np.linalg.norm(apart, axis=-1)
+            arms.append((wide.mean(), wide.max(), float(apart[:, 2].mean()) * (1.0 if made.path.lands == 0 else -1.0)))
             single += made.path.lands is not None
             waits.append(begun / FPS)
             air.append((made.path.airtime, 50.0 * made.path.velocity[1]**2 / 9.81))
@@ -155,7 +160,7 @@ def report_strides(someone: Supervisor, phases: int) -> None:
         kept_all, refused_all, all_ = kept_all + kept, refused_all + refused, all_ + phases
         print(f"  {speed:g} m/s: {phases}, {refused}; {single}; {100.0 * np.median(kept):.0f} %, {100.0 * min(kept):.0f} %; {np.median(waits):.2f}, {max(waits):.2f}; "
               f"{np.median(air, 0)[0]:.2f}, {np.median(air, 0)[1]:.0f}; {np.median(knees):.0f}, {max(knees):.0f}; "
-              f"{np.median(pulls, 0)[0]:.0f}, {np.median(pulls, 0)[1]:.0f}")
+              f"{np.median(pulls, 0)[0]:.0f}, {np.median(pulls, 0)[1]:.0f}; " + ", ".join(f"{100.0 * part:.0f}" for part in np.median(arms, 0)))
     print(f"  all: refused {refused_all} of {all_}; at least 80 % of the speed kept in {100.0 * np.mean(np.array(kept_all) >= 0.8):.0f} %")
 
 

@@ -127,7 +127,20 @@ def test_a_wish_is_given_up_when_refused_at_rest_or_after_a_while():
     assert let_go.step(FREE, 0.0, standing(refused="too far"), False, DT) == Aim()
     assert aimed(FREE, PATIENCE - 0.1, standing(), let_go).waiting > 0.0
     assert aimed(FREE, PATIENCE + 0.1, standing(), let_go) == Aim()
-    assert let_go.step(HELD, 0.0, standing(), True, DT) == Aim(), "who jumps aims at nothing"
+    assert let_go.step(FREE, 0.0, standing(), True, DT) == Aim(), "who jumps aims at nothing"
+    held = aimed(HELD, 0.2, standing()).step(HELD, 0.0, standing(), True, DT)
+    assert not held.wants and not held.step(HELD, 0.0, standing(), False, DT).wants, "nor does who holds the key for a leap that went off by itself"
+
+
+def test_a_leap_that_is_tapped_as_one_begins_waits_for_its_landing_and_is_lost_to_no_other_step():
+    begun = aimed(HELD, 0.1, standing()).step(FREE, 0.0, standing(), False, DT).step(FREE, 0.0, standing(), True, DT)
+    tapped = begun
+    for wish in (HELD, HELD, FREE, FREE, FREE):
+        tapped = tapped.step(wish, 0.0, standing(), True, DT)
+    assert tapped.wants and tapped.waiting == PATIENCE
+    flown = aimed(FREE, 0.1, standing(), tapped.step(FREE, 0.0, standing(), False, DT, aloft=True))
+    assert flown.asked(standing(), (), 9.81) is not None
+    assert flown.step(FREE, 0.0, standing(), True, DT) == Aim(), "it has gone off"
 
 
 def test_who_holds_the_button_looks_where_to_jump_and_who_taps_it_or_jumps_up_does_not():

@@ -67,6 +67,16 @@ def test_who_holds_the_button_in_a_run_and_lets_go_of_the_stick_stops(somebody):
 
 
 @pytest.mark.few(1)
+@pytest.mark.parametrize("late", [0.25, 0.05, 0.5])
+def test_who_taps_twice_leaps_twice_though_he_still_winds_up_for_the_first(somebody, late):
+    """A tap between the button's being let go and the first take-off, 0.66 s later, was lost."""
+    tap = (0.1, Wish(jump=True))
+    moments = played(somebody, (), (0.0, 0.0, 0.0, 0.0), (0.3, Wish()), tap, (late, Wish()), tap, (2.0 - late, Wish()))
+    flies = np.array([state.active == "jump" and not np.any(state.contacts) for state in states(moments)])
+    assert (np.diff(flies.astype(int)) == 1).sum() == 2
+
+
+@pytest.mark.few(1)
 @pytest.mark.parametrize("walks", [1.2, 1.6, 2.5])
 def test_who_is_held_up_before_a_box_and_taps_leaps_onto_it(somebody, walks):
     go = Wish(move=AHEAD)

@@ -93,6 +93,17 @@ def test_it_bounces_on_the_spot_as_long_as_it_is_asked_again_and_not_because_the
     assert len(seen - {0}) == 1
 
 
+def test_a_leap_that_was_let_go_of_before_it_left_the_floor_may_be_asked_again(person, rest):
+    leap, state, plans, wished = Leap(None, 0.42), rest, [], True
+    for _ in range(88):  # until 0.4 s after it has landed
+        state, _ = person.step(state, Intent(leap=leap if wished else None), 1 / FPS)
+        memory = state.memory.memory
+        if isinstance(memory, Jumping):
+            plans += [memory.plan] if memory.plan not in plans else []
+            wished = memory.time > memory.plan.take_off
+    assert len(plans) == 2
+
+
 def test_what_can_t_follow_is_said_once_and_it_lands_as_it_would(person, rest):
     states, plans = bounced(person, rest, [Leap(ahead(rest, 0.7)), Leap(ahead(rest, 9.0))], 0.1, 120)
     assert len(plans) == 1 and any("too far" in s.refused for s in states)

@@ -161,7 +161,7 @@ def rounds_kernel(body, joints, able, legs, carried, leap, off, guess, found):
             velocity[i] = (land[i] - leave[i]) / flight - 0.5 * off.gravity[i] * flight
         fall = g * flight - velocity[1]
         if leap.runs:
-            swings = swings_kernel(flight * math.sqrt(g / 9.81), carried.pace, size, carried.least)
+            swings = swings_kernel(carried.pace, size, carried.least)
         for which in range(2):
             features_kernel(velocity[1] if which == 0 else fall, carried.ahead, carried.pace, size, carried.least, carried.most, found.features[which])
             _angles(carried, which, found.features[which], swings, angles[which])

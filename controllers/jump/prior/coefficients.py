@@ -30,6 +30,7 @@ LEGS = len(carriage.ANGLES)
 COLUMNS = LEGS + 2 * EACH
 ARMS, AIR = slice(3, LEGS), slice(2 * BETWEEN, 4 * BETWEEN + 1)
 """The columns of the arms; the rows from take-off to the lowest point of the landing."""
+ELBOWS = [carriage.ANGLES.index(side + " elbow") for side in ("left", "right")]
 FEATURES = 4
 """One, airtime [s], distance [m] and pace [m/s] of a standard adult on Earth."""
 DEFAULT = assets.path("library", "jumps.npz")
@@ -89,11 +90,9 @@ def features_kernel(speed, far, pace, size, least, most, found):
 
 
 @kernel
-def swings_kernel(airtime, pace, size, least):
-    """How far arms swing in a leap off one foot of an airtime [s] and a pace [m/s], beside recorded ones, which had these features at least (FEATURES,): less in shorter and slower ones, or they would have
-    to be faster."""
-    root = math.sqrt(size)
-    return min(airtime / root / least[1], 1.0) * min(max(pace / root / least[3], 0.0), 1.0)
+def swings_kernel(pace, size, least):
+    """How far arms swing in a leap off one foot of a pace [m/s], beside recorded ones, which had these features at least (FEATURES,): less in slower ones."""
+    return min(max(pace / math.sqrt(size) / least[3], 0.0), 1.0)
 
 
 @lru_cache(maxsize=4)
