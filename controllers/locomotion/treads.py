@@ -141,23 +141,31 @@ def _choose(m, tops, floor, foot, x, z, c, s, out):
             best, left, least, most = shift, beside, far + worse, stands
             out[0], out[1], out[2] = here[0], here[1], here[2]
     if most == NONE and speed < UNHURRIED:
-        for k in range(WIDE.shape[0]):
-            shift, beside = WIDE[k, 0], WIDE[k, 1]
-            there_x, there_z = x + shift * along_x + beside * along_z, z + shift * along_z - beside * along_x
-            off_x, off_z = there_x - place[0], there_z - place[1]
-            if (1 - 2 * foot) * (c * off_x - s * off_z) < BY_ITSELF:
-                continue
-            stands = under_kernel(m, tops, floor, there_x, there_z, c, s, here)
-            if stands > NONE and abs(steps_kernel(m, foot, here, off_x, off_z)) <= STEP:
-                best, left, most = shift, beside, stands
-                out[0], out[1], out[2] = here[0], here[1], here[2]
-                break
+        most, best, left = _all_about(m, tops, floor, foot, x, z, along_x, along_z, c, s, place, out)
     m.land[foot, 0], m.land[foot, 1] = aside[0] + best * along_x + left * along_z, aside[1] + best * along_z - left * along_x
     if most == NONE:
         under_kernel(m, tops, floor, x, z, c, s, out)
         if speed > SLOW and steps_kernel(m, foot, out, x - place[0], z - place[1]) < -STEP:  # over an edge: as the other one, until it is over it, too
             out[0], out[1], out[2] = other, 0.0, 0.0
     return most, best, left, speed
+
+
+@kernel
+def _all_about(m, tops, floor, foot, x, z, along_x, along_z, c, s, other, out):
+    """The nearest place all about x, z, on its own side of the other foot's ball (2,), that a foot can stand on, no step too high: how much of it stands there, how far along the way and to the
+    left that is [m]; its ground (3,) into out, which is left alone where there is none."""
+    here = np.empty(3)
+    for k in range(WIDE.shape[0]):
+        shift, left = WIDE[k, 0], WIDE[k, 1]
+        there_x, there_z = x + shift * along_x + left * along_z, z + shift * along_z - left * along_x
+        off_x, off_z = there_x - other[0], there_z - other[1]
+        if (1 - 2 * foot) * (c * off_x - s * off_z) < BY_ITSELF:
+            continue
+        stands = under_kernel(m, tops, floor, there_x, there_z, c, s, here)
+        if stands > NONE and abs(steps_kernel(m, foot, here, off_x, off_z)) <= STEP:
+            out[0], out[1], out[2] = here[0], here[1], here[2]
+            return stands, shift, left
+    return NONE, 0.0, 0.0
 
 
 @kernel

@@ -69,9 +69,9 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
     goes_on = min(max(m.velocity[0], 0.0) / GOES_ON, 1.0)
     faster, soon = sooner(m), 1.0 + goes_on * (sooner(m) - 1.0)
     haste = (HASTE[0] + (HASTE[1] + HASTE[2] * m.runner - HASTE[0]) * bent * goes_on) * soon * soon
-    goal_of = np.empty(2)
+    goals = np.empty(2)
     for foot in range(2):
-        bears[foot] = goal_of[foot] = m.base[foot]
+        bears[foot] = goals[foot] = m.base[foot]
         ball = 2 * foot + 1
         firm = max(m.grip[ball - 1], m.grip[ball]) >= 1.0
         if firm and m.held[foot] == 1:
@@ -108,7 +108,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             continue
         m.held[foot] = 0
         come_down(m, tops, floor, foot, progress, under)
-        goal_of[foot] = under[0]
+        goals[foot] = under[0]
         share = progress / RISES if under[0] > m.left[foot] else (progress - SINKS) / (1.0 - SINKS)
         path = m.left[foot] + (under[0] - m.left[foot]) * smooth(share)
         along = _along(m, foot, place)
@@ -137,7 +137,7 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
     low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
     before, rate = m.level, m.level_rate
-    up = goes_on * _climbs_ahead(m, goal_of, place)
+    up = goes_on * _climbs_ahead(m, goals, place)
     most = LOW[0] + up * (CLIMBING[0] - LOW[0]) + (LOW[1] + up * (CLIMBING[1] - LOW[1])) * (high - low)
     m.middle = min(0.5 * (low + high), low + most)
     climbs = _climbs(m)

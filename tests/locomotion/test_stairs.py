@@ -13,10 +13,12 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts" / "measure"))
 from gambol.controllers.body import forward_kinematics, sole_corners  # noqa: E402
 from gambol.controllers.contract import Intent, Leap  # noqa: E402
+from gambol.controllers.locomotion.foot_points import ball_kernel  # noqa: E402
 from gambol.controllers.locomotion.memory import RUN  # noqa: E402
 from gambol.controllers.locomotion.tops import tops  # noqa: E402
-from gambol.controllers.locomotion.treads import most_speed, on_stairs  # noqa: E402
+from gambol.controllers.locomotion.treads import FOOT, NONE, come_down, most_speed, on_stairs, under_kernel  # noqa: E402
 from gambol.controllers.navigation import steer  # noqa: E402
+from gambol.controllers.navigation.passing import STEP  # noqa: E402
 from stairs import depth, flight, ran, walked  # noqa: E402
 
 
@@ -135,6 +137,27 @@ def test_who_stands_on_stairs_keeps_to_their_speed_whichever_way_he_turns(locomo
     runs = min(max(speed * np.cos(wish) - 1.5, 0.0), 1.0)
     fastest = min(max((2.6 + 0.9 * runs) * tread * 1.1, 0.5), 1.0 + 0.4 * runs)
     assert 0.5 - 1e-6 <= most <= fastest or speed <= fastest and most == 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-3.1, 3.1), st.floats(0.02, 0.27), st.integers(2, 5), st.integers(0, 1), st.floats(0.1, 0.5), st.floats(-0.25, 0.25), st.floats(0.0, 0.4))
+@example(1.87, 0.02, 5, 0, 0.47, 0.02, 0.12)
+def test_a_foot_of_who_turns_on_stairs_finds_a_place_on_its_side_a_step_off_at_most(locomotion, heading, into, step, foot, beside, before, speed):
+    """Two treads down beside the one on which the other foot stands it stood in the air, as high as that."""
+    around = [SimpleNamespace(centre=(0.0, 0.085 * (n + 1), (n + 0.5) * 0.29), size=(9.0, 0.17 * (n + 1), 0.29), heading=0.0, slope=0.0) for n in range(8)]
+    memory = locomotion.start(np.array([0.0, 0.29 * step + into, heading])).memory.copy().reshape(1)[0]
+    c, s, side = np.cos(heading), np.sin(heading), 1.0 - 2.0 * foot
+    other, under, ground = np.empty(2), np.empty(3), np.empty(3)
+    memory["level"], memory["base"], memory["velocity"] = 0.17 * (step + 1), 0.17 * (step + 1), (-speed, 0.0, 0.0)
+    ball_kernel(memory, 1 - foot, other)
+    memory["ground"][:2] += [0.0, 0.29 * step + into] - other  # the other foot's ball stands there
+    other[:] = 0.0, 0.29 * step + into
+    ball = other + side * beside * np.array([c, -s]) + before * np.array([s, c])
+    memory["coming"][foot] = ball - FOOT * np.array([s, c]), ball
+    come_down(memory, tops(around), 0.0, foot, 0.3, ground)
+    x, z = memory["coming"][foot, 1] + memory["land"][foot]
+    assert abs(ground[0] - memory["base"][1 - foot]) < STEP
+    assert under_kernel(memory, tops(around), 0.0, x, z, c, s, under) > NONE and under[0] == ground[0]
 
 
 def test_runners_who_turn_on_stairs_keep_their_feet_on_them(locomotion):
