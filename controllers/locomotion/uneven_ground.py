@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
-from ..body import spring_kernel
 from ..compiled import kernel
 from ..navigation.passing import STEP
 from .before_edges import edge_ahead
+from .body_level import lead_level
 from .foot_points import ball_kernel, shown_kernel
 from .memory import WALK
 from .minimum_jerk import smooth
@@ -40,14 +40,6 @@ LETS_GO = 0.5
 """A foot whose points grip no firmer than this together may go up before a riser."""
 TILT_HALFLIFE = 0.05
 """A foot takes on the slope that it will come down on with this half-life [s]."""
-GRAVITY = 9.81
-LEVEL_HALFLIFE = 0.12
-"""A body's level follows its feet with this half-life [s]."""
-STROLLS, RUNS = 1.4, 2.2
-"""A walker's level rises and sinks with a slope by itself, too, the more the faster he is between these [m/s]: a run that is let go of becomes a walk as fast."""
-LOW, CLIMBING = (0.02, 0.075), (0.06, 0.25)
-"""A body's level lies no more than the first [m] and the second share of what lies between its feet over the lower one's ground: its leg must reach there; but higher of who climbs ahead, whose
-lower leg is about to leave: he went up squatting."""
 RISER = 0.06
 """What lies so much higher before or behind a foot is no slope [m]."""
 BETWEEN, SOME = 20, 6
@@ -135,46 +127,9 @@ def follow_ground(m, body, height, ahead, goes, tops, floor, swing, dt):
             bears[foot] = m.left[foot] + (under[0] - m.left[foot]) * progress * progress * (3.0 - 2.0 * progress)
         for i in range(2):
             m.tilt[foot, i] += (under[1 + i] - m.tilt[foot, i]) * (1.0 - 2.0 ** (-dt / TILT_HALFLIFE))
-    low, high = min(bears[0], bears[1]), max(bears[0], bears[1])
-    before, rate = m.level, m.level_rate
-    up = goes_on * _climbs_ahead(m, goals, place)
-    most = LOW[0] + up * (CLIMBING[0] - LOW[0]) + (LOW[1] + up * (CLIMBING[1] - LOW[1])) * (high - low)
-    m.middle = min(0.5 * (low + high), low + most)
-    climbs = _climbs(m)
-    m.level, m.level_rate = spring_kernel(m.level, m.level_rate - climbs, m.middle - m.lower, LEVEL_HALFLIFE / faster, dt)
-    m.level, m.level_rate = m.level + climbs * dt, m.level_rate + climbs
-    if m.level_rate < rate - GRAVITY * dt:  # nobody sinks faster than they fall
-        m.level_rate = rate - GRAVITY * dt
-        m.level = before + 0.5 * (rate + m.level_rate) * dt
-    for k in range(4):  # what is shown stays where it is
-        m.raised[k] -= m.level - before
+    lead_level(m, bears, goals, goes_on, faster, place, dt)
     m.stairs, m.brink = on_stairs(m, tops, floor), edge_ahead(m, tops, floor)
     m.most = 0.0 if m.alert and m.stairs == 0.0 else most_speed(m, tops, floor)  # who wants to leap may go at what he leaps onto, but runs on no treads that feet can't find
-
-
-@kernel
-def _climbs_ahead(m, goals, place):
-    """Whether who goes ahead climbs: a foot that swings comes down higher than it left, or, both down, the higher one is ahead. goals: (2,) how high feet stand, or will [m]."""
-    higher = 0 if m.left[0] > m.left[1] else 1
-    ball_kernel(m, higher, place)
-    x, z = place[0], place[1]
-    ball_kernel(m, 1 - higher, place)
-    climbs = m.left[higher] > m.left[1 - higher] + SAME and math.sin(m.ground[2]) * (x - place[0]) + math.cos(m.ground[2]) * (z - place[1]) > 0.0
-    for foot in range(2):
-        if abs(goals[foot] - m.left[foot]) > SAME and m.held[foot] == 0:
-            climbs = goals[foot] > m.left[foot]
-    return 1.0 if climbs else 0.0
-
-
-@kernel
-def _climbs(m):
-    """How fast the level of who runs, or still walks as fast, rises with a slope [m/s], which would else follow his feet too late for legs to have room."""
-    share = smooth((math.hypot(m.velocity[0], m.velocity[2]) - STROLLS) / (RUNS - STROLLS)) if m.family == WALK else 1.0
-    if share <= 0.0:
-        return 0.0
-    c, s = math.cos(m.ground[2]), math.sin(m.ground[2])
-    x, z = c * m.velocity[2] + s * m.velocity[0], c * m.velocity[0] - s * m.velocity[2]
-    return 0.5 * share * ((m.tilt[0, 0] + m.tilt[1, 0]) * x + (m.tilt[0, 1] + m.tilt[1, 1]) * z)
 
 
 @kernel
