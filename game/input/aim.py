@@ -69,7 +69,9 @@ class Aim(Aimed):
         ahead: where x, z [m] from his feet the ring lies at first of one whom something holds up, see `straight_ahead.onto`."""
         if wish.jump and self.spent or leaving and not self.follows and (self.aiming or not wish.jump):
             return Aim(spent=wish.jump)
-        self, aloft = (self if self.follows == leaving else Aim(follows=True) if leaving else replace(self, follows=False)), aloft or leaving
+        aloft = aloft or leaving
+        if self.follows != leaving:
+            self = Aim(follows=True) if leaving else replace(self, follows=False)
         stopped = not wish.jump and self.waiting > dt and self._stopped(state, even)
         x, z = self._there(state)
         tilt = math.hypot(*wish.move)

@@ -199,8 +199,9 @@ def beside(takes: Sequence[str], plots: Path | None) -> None:
             print("  ours / theirs, median: " + "; ".join(f"{key} {np.median([r[key] for r in some]):.2f} / {np.median([r[key + ' theirs'] for r in some]):.2f}"
                                                           for key in ("knee off", "trunk landed", "crouch", "sinks")))
             for name, told in (("until touch-down", some), ("small ones on the spot", [row for row in some if row["small"]])):
-                print(f"  {name}, {len(told)}, ours / theirs, median: " + "; ".join(f"{key} by {np.median([r[key] for r in told]):.0f} / {np.median([r[key + ' theirs'] for r in told]):.0f}°"
-                                                                        for key in ("arms turn", "elbows bend")) if told else "", end="\n" if told else "")
+                if told:
+                    print(f"  {name}, {len(told)}, ours / theirs, median: " + "; ".join(f"{key} by {np.median([r[key] for r in told]):.0f} / {np.median([r[key + ' theirs'] for r in told]):.0f}°"
+                                                                                        for key in ("arms turn", "elbows bend")))
             print("  knees turn fastest, ours / theirs, median (worst): " + " / ".join(f"{np.median([r[key] for r in some]):.1f} ({max(r[key] for r in some):.1f})"
                                                                                       for key in ("knee turns", "knee turns theirs")) + " rad/s")
 
